@@ -1,6 +1,5 @@
-//! Measures how fast the shipped response network predicts on one core: the paths of its
-//! components, one step of the joint distribution, and the distribution of a motion of 4 s. The
-//! model has three components, and the car spins.
+//! Measures how fast the shipped response network predicts: the paths of its components, a forecast of 4 s,
+//! and the motions under one force that it consists of. The model has three components, and the car spins.
 //!
 //! `cargo bench --bench response`
 
@@ -12,7 +11,9 @@ use divan::counter::ItemsCount;
 use impactlab_core::data::Outcome;
 use impactlab_core::vehicle::VehicleInput;
 use impactlab_networks::learning::ModelFile;
-use impactlab_networks::response::{Predictor, ResponseCase, ResponseModel};
+use impactlab_networks::response::{
+    LEAST_MOTIONS, Predictor, RESISTANCE_SCATTER, ResponseCase, ResponseModel, RestSearch,
+};
 
 /// Number of steps in 4 s.
 const N_STEPS: usize = 400;
@@ -51,23 +52,25 @@ fn path_steps(bencher: Bencher<'_, '_>) {
         .bench_local(|| predictor.paths(&case.states[0], &case.inputs));
 }
 
-/// Computes one step of the distribution of all components.
-///
-/// - `is_struck`: whether the contact force acts during the step.
-#[divan::bench(args = [true, false])]
-fn full_step(bencher: Bencher<'_, '_>, is_struck: bool) {
-    let (predictor, case) = spinning();
-    let acts = |input: &&VehicleInput<f64>| input.collision.is_some() == is_struck;
-    let input = *case.inputs.iter().find(acts).expect("a force that ends");
-    bencher.bench_local(|| predictor.motion(&case.states[0], &[input]));
-}
-
-/// Computes the distribution of a motion of 4 s. The items counted are steps of all components
-/// together.
-#[divan::bench]
-fn motion_of_4_s(bencher: Bencher<'_, '_>) {
+/// Computes the distribution of a motion of 4 s, of 240 whole motions. The items counted are steps of all
+/// motions together.
+#[divan::bench(sample_count = 10)]
+fn forecast_of_4_s(bencher: Bencher<'_, '_>) {
     let (predictor, case) = spinning();
     bencher
+        .counter(ItemsCount::new(LEAST_MOTIONS * N_STEPS))
+        .bench_local(|| predictor.forecast(&case.states[0], &case.inputs));
+}
+
+/// Computes motions of 4 s under one force: those of the components, and draws.
+///
+/// - `n_draws`: 1 where a forecast draws many forces and vehicles, 8 where it draws 30.
+#[divan::bench(args = [1, 8])]
+fn motions_of_4_s(bencher: Bencher<'_, '_>, n_draws: usize) {
+    let (predictor, case) = spinning();
+    let search = RestSearch { seed: 1, resistance_scatter: RESISTANCE_SCATTER };
+    let draws: Vec<usize> = (0..n_draws).collect();
+    bencher
         .counter(ItemsCount::new(N_STEPS))
-        .bench_local(|| predictor.motion(&case.states[0], &case.inputs));
+        .bench_local(|| predictor.settled(&case.states[0], &case.inputs, &draws, &search));
 }

@@ -96,7 +96,7 @@ impl Scores {
         let predictor = model.predictor(&case.vehicle)?;
         let path = predictor.central_path(initial, &case.inputs);
         self.errors_m.push(average_error_m(&path, &case.states));
-        let motion = predictor.motion(initial, &case.inputs);
+        let motion = predictor.forecast(initial, &case.inputs);
         for time_s in INSTANTS_S {
             let idx = (time_s / STEP_S).round() as usize;
             let Some(state) = case.states.get(idx) else { continue };

@@ -2,14 +2,13 @@
 //! their error rates; the same lines are put into `docs/VALIDATION.md`.
 //!
 //! ```text
-//! cargo run --release --example validation                          # impact, 4DOF model, force network
+//! cargo run --release --example validation                          # all but reconstructions
 //! cargo run --release --example validation -- DIR/evaluation.json   # and reconstructions, if evaluated
-//! cargo run --release --example validation -- --same response_network
+//! cargo run --release --example validation -- --same reconstruction_of_rest
 //! ```
 //!
 //! Reconstructions take hours and are read from the files that `impactlab evaluate reconstruction
-//! datasets/staged --known WHAT --out DIR` has written. The comparison on cars that the response network
-//! has not seen takes as long; its table is written by hand, and `--same` says that it is that of this
+//! datasets/staged --known WHAT --out DIR` has written; `--same` says that a measurement is that of this
 //! build, though its date stays that of the measurement.
 
 #![allow(clippy::print_stdout)]

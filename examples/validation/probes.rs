@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use impactlab_core::data::list_folder;
 use impactlab_core::numerics::sha256_hex;
 use impactlab_core::vehicle::Integrator;
-use impactlab_networks::shipped::ModelSource;
 use impactlab_reconstruct::evaluate::KnownEvidence;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_reconstruct::sampler::Target;
@@ -87,10 +86,9 @@ pub fn probe(root: &Path, subject: Measured) -> Result<Probe, Box<dyn Error>> {
             numbers(&question, &names)
         }
         Measured::ResponseNetwork => {
-            let (dataset, case) = case("trajectories-fleet/compact", "compact_000");
+            let (dataset, case) = case("trajectories-cars-held-out/car-000", "car-000_00");
             let source = MotionSource::Case { dataset, case };
             let question = PredictMotionRequest {
-                response_model: ModelSource::ShippedPretrained.into(),
                 draws: 10,
                 ..PredictMotionRequest::new(source, ForceSource::Given)
             };

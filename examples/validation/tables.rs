@@ -6,17 +6,19 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab_core::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, RestitutionForm};
-use impactlab_core::data::Dataset;
+use impactlab_core::data::{Dataset, list_folder};
 use impactlab_core::numerics::{Summary, quantile_of_sorted, wilson_interval};
 use impactlab_core::vehicle::Integrator;
 use impactlab_networks::force::{ContactLaw, ForceCase};
 use impactlab_networks::learning::{TEST_SHARE, split};
 use impactlab_networks::pair::{EvaluatedPair, VehicleScore};
+use impactlab_networks::response::evaluate::{ComparedCase, MotionCoverage};
 use impactlab_reconstruct::ReconstructedQuantity;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedCollisions, StagedSplit};
 use impactlab_study::{
-    EvaluateForceRequest, EvaluatePairsRequest, Event, HeldIntervals, Library, Measured,
-    ModelChoice, PairSplit, Question, SimulateDatasetRequest, VehicleChoice,
+    BadCases, EvaluateForceRequest, EvaluatePairsRequest, EvaluateResponseRequest, EvaluatedCases,
+    Event, HeldIntervals, Library, Measured, ModelChoice, PairSplit, Question,
+    SimulateDatasetRequest, VehicleChoice,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -31,13 +33,14 @@ impl Row {
     }
 }
 
-/// What takes minutes: impulses, motions of the 4DOF model, and the force network.
+/// What takes minutes: impulses, motions of the 4DOF model, pairs, and both networks.
 pub(crate) fn quick(datasets: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
     Ok(vec![
         impact(&datasets.join("fea"))?,
         four_dof(datasets)?,
         force(&datasets.join("fea"))?,
         pairs(&datasets.join("pairs"))?,
+        response(&datasets.join("trajectories-cars-held-out"))?,
     ])
 }
 
@@ -158,6 +161,62 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
         }
     }
     Ok(Found { subject: Measured::Pairs, tables: vec![rows], held })
+}
+
+/// Errors of the shipped response network on cars that it has not seen, each by its data sheet, and how
+/// often its regions held.
+fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
+    let mut cases = Vec::new();
+    for car in list_folder(path)?.into_iter().filter(|car| car.is_dir()) {
+        let question = EvaluateResponseRequest {
+            model: ModelChoice::default(),
+            data: car,
+            split: EvaluatedCases::All,
+            vehicle: VehicleChoice::default(),
+            seed: 0,
+            bad_cases: BadCases::LeaveOut,
+        };
+        cases.extend(answer(&question)?.report.report.comparison.cases);
+    }
+    let coverage = |case: &ComparedCase| case.metrics.coverage.unwrap_or_default();
+    let mut rows = Vec::new();
+    for (name, is_braked) in [("coasting", false), ("braked", true)] {
+        let of: Vec<&ComparedCase> =
+            cases.iter().filter(|case| case.is_braked == is_braked).collect();
+        let summary = |value: fn(&ComparedCase) -> Option<f64>| {
+            Summary::from_values(of.iter().copied().filter_map(value)).ok_or("no cases")
+        };
+        let path_m = summary(|case| Some(case.metrics.average_error_4_s_m))?;
+        let end_m = summary(|case| Some(case.metrics.error.final_error_m))?;
+        let share = |value: fn(&MotionCoverage) -> f64| {
+            let sum: f64 = of.iter().map(|case| value(&coverage(case))).sum();
+            format!("{:.0} %", 100.0 * sum / of.len().max(1) as f64)
+        };
+        rows.push(Row::new(
+            &[
+                name.to_owned(),
+                of.len().to_string(),
+                format!("{:.2}", path_m.mean),
+                format!("{:.2}", path_m.median),
+                format!("{:.1}", end_m.median),
+                share(|held| held.path_50),
+                share(|held| held.path_90),
+                share(|held| held.end_50),
+                share(|held| held.end_90),
+            ],
+            1,
+        ));
+    }
+    let count = |holds: fn(&MotionCoverage) -> f64| {
+        cases.iter().filter(|case| holds(&coverage(case)) > 0.5).count()
+    };
+    let held = HeldIntervals {
+        quantity: "place at the end".to_owned(),
+        in_50: count(|held| held.end_50),
+        in_90: count(|held| held.end_90),
+        n: cases.len(),
+    };
+    Ok(Found { subject: Measured::ResponseNetwork, tables: vec![rows], held: vec![held] })
 }
 
 /// Errors of the shipped force network and of two of its baselines on the test cases, and how often its

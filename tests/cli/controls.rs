@@ -70,6 +70,19 @@ fn unit_and_shift_of_a_record_without_units_are_offered_together() {
     assert_eq!(yaw_rad(&mended), yaw_rad(&stated), "{}", mended.err);
 }
 
+/// Half a degree that is read as half a radian turns the car, so that the answer says how it was read.
+#[test]
+fn units_that_nobody_states_follow_a_recording_into_the_answer() {
+    let folder = TempDir::new().unwrap();
+    let steer = write(&folder, "half.csv", "time,steer\n0,0\n1,0.5\n5,0.5\n");
+    let brakes = write(&folder, "brakes.csv", "time,brake_fl\n0,0.5\n5,0.5\n");
+    let ran = simulate(text(&brakes), &["--steer", text(&steer), "--wheels"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let said = format!("{}{}", ran.out, ran.err);
+    assert!(said.contains("half: column 2 \"steer\" names no unit; taken as rad"), "{said}");
+    assert!(said.contains("brakes: column 2 \"brake_fl\" names no unit; taken as N m"), "{said}");
+}
+
 #[test]
 fn a_gap_and_what_acts_after_the_end_follow_a_recording_into_the_answer() {
     let folder = TempDir::new().unwrap();

@@ -33,7 +33,7 @@ fn the_library_is_listed_printed_and_read_back() {
     let list = json(&["vehicles"]);
     let vehicles = list["vehicles"].as_array().unwrap();
     let library: Vec<&Value> = vehicles.iter().filter(|v| v["kind"] == "library").collect();
-    assert_eq!(library.len(), 34);
+    assert_eq!(library.len(), 38);
     let folder = TempDir::new().unwrap();
     for vehicle in library.iter().take(6) {
         let id = vehicle["id"].as_str().unwrap();

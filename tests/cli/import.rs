@@ -69,6 +69,18 @@ fn a_table_of_a_report_is_opened_as_any_table() {
 }
 
 #[test]
+fn a_table_with_a_change_of_velocity_names_the_option_that_reads_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("table.csv");
+    let header = "Time [ms],\"Delta-V, Longitudinal [km/h]\"\n";
+    fs::write(&table, format!("{header}0,0\n50,-16\n100,-30\n120,-32\n150,-32\n")).unwrap();
+    let out = folder.path().join("out");
+    let output = program().args(["import", text(&table), "--out", text(&out)]).output().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && error.contains("impactlab import --recorder"), "{error}");
+}
+
+#[test]
 fn a_crash_test_gives_the_stiffness_of_its_front() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);

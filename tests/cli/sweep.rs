@@ -248,6 +248,28 @@ fn every_file_that_a_row_may_read_is_known_by_its_content() {
     let path = sweep.join("plan.json");
     let text = fs::read_to_string(&path).unwrap();
     assert_eq!(json(&text)["files"].as_array().map(Vec::len), Some(2), "{text}");
+    // It says where they are from its own folder, so that both go to another place together.
+    let place = folder.path().to_str().unwrap();
+    assert!(!text.contains(place) && text.contains("\"../a.toml\""), "{text}");
+    let chunk = fs::read(chunk_path(&sweep, 0)).unwrap();
+    let elsewhere = TempDir::new().unwrap();
+    for name in ["a.toml", "b.toml"] {
+        fs::copy(at(name), elsewhere.path().join(name)).unwrap();
+    }
+    let moved = elsewhere.path().join("moved");
+    fs::create_dir(&moved).unwrap();
+    fs::copy(&path, moved.join("plan.json")).unwrap();
+    ok(run(&["run", shown(&moved)]));
+    assert!(fs::read(chunk_path(&moved, 0)).unwrap() == chunk, "the chunk depends on the place");
+    // Plans of the first format have absolute paths.
+    let mut first = json(&text.replace("../a.toml", &a).replace("../b.toml", &b));
+    first["format"] = 1.into();
+    let old = folder.path().join("old");
+    fs::create_dir(&old).unwrap();
+    fs::write(old.join("plan.json"), first.to_string()).unwrap();
+    ok(run(&["run", shown(&old)]));
+    let told = ok(run(&["status", shown(&old)]));
+    assert!(told.contains("failed   0"), "{told}");
     // A plan that leaves a file out reads it in no row.
     fs::remove_file(chunk_path(&sweep, 0)).unwrap();
     let mut fewer = json(&text);
@@ -260,6 +282,43 @@ fn every_file_that_a_row_may_read_is_known_by_its_content() {
     fs::write(at("b.toml"), fs::read_to_string(at("b.toml")).unwrap() + "# changed\n").unwrap();
     let said = error(&["run", shown(&sweep)]);
     assert!(said.contains("the content of") && said.contains("b.toml"), "{said}");
+}
+
+/// A data set, whose folder stands in the question, named from the folder in which the plan is made.
+#[test]
+fn a_plan_finds_what_was_named_from_another_folder_and_moves_with_it() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/trajectories-fea");
+    fs::create_dir_all(at("here/data/trajectories")).unwrap();
+    for name in ["cases.csv", "vehicle.toml", "trajectories/FE_c001.csv"] {
+        let text = fs::read_to_string(shipped.join(name)).unwrap();
+        let n_lines = if name == "cases.csv" { 2 } else { usize::MAX };
+        let lines: Vec<&str> = text.lines().take(n_lines).collect();
+        fs::write(at("here/data").join(name), lines.join("\n") + "\n").unwrap();
+    }
+    let in_here = |command: &mut Command| ok(command.current_dir(at("here")).output().unwrap());
+    let ask = ["simulate", "--dataset", "data", "--case", "FE_c001", "--print-request"];
+    fs::write(at("ask.json"), in_here(program().args(ask))).unwrap();
+    let plan = "question = \"request\"\ndesign = \"grid\"\nn = 1\n[request]\nfile = \"ask.json\"\n\
+                outcomes = [{ name = \"error_m\", at = \"/cases/0/average_error_m\", unit = \"m\" }]\n\
+                [vary.case]\nat = \"/case\"\nlist = [\"FE_c001\"]\n";
+    fs::write(at("plan.toml"), plan).unwrap();
+    in_here(&mut sweep(&["plan", "../plan.toml", "--out", "../sweep"]));
+    ok(run(&["run", shown(&at("sweep"))]));
+    let told = ok(run(&["status", shown(&at("sweep"))]));
+    assert!(told.contains("failed   0"), "{told}");
+    let text = fs::read_to_string(at("sweep/plan.json")).unwrap();
+    assert!(text.contains("\"dataset\": \"../here/data\""), "{text}");
+    assert!(!text.contains(shown(folder.path())), "{text}");
+
+    let chunk = fs::read(chunk_path(&at("sweep"), 0)).unwrap();
+    fs::create_dir_all(at("elsewhere/sweep")).unwrap();
+    fs::rename(at("here"), at("elsewhere/here")).unwrap();
+    fs::rename(at("sweep/plan.json"), at("elsewhere/sweep/plan.json")).unwrap();
+    ok(run(&["run", shown(&at("elsewhere/sweep"))]));
+    let moved = fs::read(chunk_path(&at("elsewhere/sweep"), 0)).unwrap();
+    assert!(moved == chunk, "the chunk depends on the place");
 }
 
 #[test]

@@ -117,6 +117,9 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     step_until(&mut harness, "the package", |state| !state.session.tasks.is_writing());
     let elsewhere = unpack(&zip, &folder.path().join("elsewhere")).expect("unpacked");
     assert_eq!(answers_of(&elsewhere), answers);
+    let text = std::fs::read_to_string(&elsewhere).expect("the case");
+    assert!(text.contains("packed into pit.zip"), "{text}");
+    assert!(!text.contains(folder.path().to_str().expect("text")), "it says where it was made");
 }
 
 /// The questions of the first variant of a case file.

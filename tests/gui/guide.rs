@@ -1,13 +1,20 @@
-//! The pictures of the window in the tutorials. `UPDATE_GUIDE=1` draws them anew; look at the difference.
+//! The pictures of the window in the tutorials, and of the shipped atlas. `UPDATE_GUIDE=1` draws them anew;
+//! look at the difference.
 
 use std::path::Path;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use image::{Rgba, RgbaImage, imageops};
 use impactlab::app::{
     App, Command, Network, Pane, ReconstructionCommand, State, TrainingCommand, VariantCommand,
 };
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{AtlasFigure, Figure, atlas_figure, sensitivity_figure};
+use impactlab_draw::{Canvas, figure_image};
 use impactlab_study::ConfigChoice;
+use impactlab_sweep::Outcome;
+use impactlab_sweep::atlas::Atlas;
 
 use crate::harness::{apply, is_idle, open_at, step_until};
 use crate::pictures::save;
@@ -39,12 +46,18 @@ fn step(harness: &mut Harness<'_, App>, name: &str) {
     harness.run_steps(4);
     save(harness, name);
     let image = harness.render().expect("the software renderer always draws");
+    kept(name, &image);
+}
+
+/// The picture of the guide that is drawn now as `image`; `UPDATE_GUIDE=1` replaces it.
+fn kept(name: &str, image: &RgbaImage) -> RgbaImage {
     let path = Path::new(FOLDER).join(name);
     if std::env::var_os("UPDATE_GUIDE").is_some() {
         image.save(&path).expect("a picture is written");
     }
     let kept = image::open(&path).expect("UPDATE_GUIDE=1 draws it").to_rgba8();
     assert_eq!(kept.dimensions(), image.dimensions(), "{name}: UPDATE_GUIDE=1 draws it anew");
+    kept
 }
 
 fn is_forecast(state: &State) -> bool {
@@ -121,4 +134,75 @@ fn own_data_from_the_cases_to_a_training() {
     form.training.config = ConfigChoice::default();
     assert!(harness.query_all_by_label_contains("Losses while training on").count() > 0);
     step(&mut harness, "tutorial-own-data-window-training.png");
+}
+
+/// A figure as a picture of half the width of a page.
+fn picture(figure: &Figure) -> RgbaImage {
+    let canvas = Canvas { size_px: [960, 720], scale: 1.5, dark: false };
+    figure_image(figure, canvas).expect("a picture")
+}
+
+/// A map of the shipped atlas over two axes.
+///
+/// - `held`: axes with their bins; the others are averaged over.
+fn map(
+    axes: [&str; 2],
+    held: &[(&str, usize)],
+    outcome: Outcome,
+    case: Option<[f64; 2]>,
+) -> RgbaImage {
+    let atlas = Atlas::shipped().expect("it comes with the program");
+    let axis = |word: &str| atlas.axis(word).expect("an axis");
+    let mut bins = vec![None; atlas.axes.len()];
+    for (word, bin) in held {
+        bins[axis(word)] = Some(*bin);
+    }
+    let (held, measure, units) = (&bins[..], outcome.into(), UnitSystem::Si);
+    let axes = axes.map(axis);
+    picture(&atlas_figure(&AtlasFigure { atlas, axes, held, measure, case, units }))
+}
+
+fn beside(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
+    let mut both = RgbaImage::new(left.width() + right.width(), left.height());
+    imageops::replace(&mut both, left, 0, 0);
+    imageops::replace(&mut both, right, i64::from(left.width()), 0);
+    both
+}
+
+/// A picture of the shipped atlas, which a page of the guide must show as it is drawn now, with words for
+/// whoever does not see it and with what it is.
+fn shown(page: &str, name: &str, image: &RgbaImage) {
+    let kept = kept(name, image);
+    let differs = |(kept, drawn): &(&Rgba<u8>, &Rgba<u8>)| {
+        kept.0.iter().zip(drawn.0).any(|(kept, drawn)| kept.abs_diff(drawn) > 2)
+    };
+    let n_pixels = image.pixels().len();
+    let n_differ = kept.pixels().zip(image.pixels()).filter(differs).count();
+    assert!(n_differ * 1000 <= n_pixels, "{name}: {n_differ} pixels; UPDATE_GUIDE=1 draws it anew");
+
+    let page = Path::new(FOLDER).with_file_name(page);
+    let text = std::fs::read_to_string(&page).expect("a page");
+    let (before, after) =
+        text.split_once(&format!("](pictures/{name})")).expect("the page shows the picture");
+    let alt = before.rsplit_once("![").expect("words for the picture").1;
+    assert!(alt.len() > 60 && !alt.contains('\n'), "{name}: {alt:?}");
+    let caption = after.split("\n\n").nth(1).unwrap_or_default();
+    assert!(caption.starts_with('*') && caption.contains("model study"), "{name}: {caption:?}");
+}
+
+#[test]
+fn the_pictures_of_the_atlas_are_those_of_the_atlas_that_is_shipped() {
+    let speeds = ["speed", "closing"];
+    let of_esc = |esc| map(speeds, &[("esc", esc)], Outcome::Turns90, None);
+    shown("atlas-trainers.md", "atlas-spin.png", &beside(&of_esc(0), &of_esc(1)));
+
+    let half_turn = map(speeds, &[], Outcome::Turns180, None);
+    let atlas = Atlas::shipped().expect("the shipped atlas");
+    let indices = atlas.sensitivity(Outcome::Turns90).expect("the shipped atlas has Sobol indices");
+    let bars = picture(&sensitivity_figure(Outcome::Turns90.label(), atlas, &indices));
+    shown("atlas-policy.md", "atlas-influence.png", &beside(&half_turn, &bars));
+
+    // Contact 0.1 m ahead of the rear axle, closing at 4 m/s.
+    let door = map(["overlap", "closing"], &[], Outcome::DoorContact, Some([0.1, 4.0]));
+    shown("atlas-litigators.md", "atlas-case.png", &door);
 }

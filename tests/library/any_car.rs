@@ -17,7 +17,7 @@ use impactlab_networks::learning::{
 };
 use impactlab_networks::response::{
     ResponseCase, ResponseConfig, ResponseModel, ResponseTrainSettings, STEP_S, average_error_m,
-    condition, fine_tune, rollout, train_fleet,
+    condition, fine_tune, recalibrate, rollout, train_fleet,
 };
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::analysis::PulseSetup;
@@ -98,7 +98,7 @@ fn end(
     model: &ResponseModel,
     (vehicle, initial, inputs): (&VehicleParameters, &VehicleState<f64>, &[VehicleInput<f64>]),
 ) -> (f64, VehicleState<f64>) {
-    let motion = model.predictor(vehicle).expect("a predictor").motion(initial, inputs);
+    let motion = model.predictor(vehicle).expect("a predictor").forecast(initial, inputs);
     let covariance = motion.covariance(inputs.len());
     let area = covariance[(0, 0)] * covariance[(1, 1)] - covariance[(0, 1)].powi(2);
     (area.max(0.0).sqrt(), motion.mean(inputs.len()))
@@ -160,7 +160,7 @@ proptest! {
             let away = |[x, y]: [f64; 2]| (x - here[0]).hypot(y - here[1]);
             let slicker = end_of(&vehicle.clone().with_friction(0.9 * friction), 1.0);
             let off_m = away(slicker).min(away(end_of(&vehicle, 1.1)));
-            let motion = predictor.motion(&initial, &inputs);
+            let motion = predictor.forecast(&initial, &inputs);
             let covariance = motion.covariance(inputs.len());
             let std_m = (covariance[(0, 0)] + covariance[(1, 1)]).sqrt();
             prop_assert!(std_m > 0.25 * off_m, "{std_m} m where the physics is off by {off_m} m");
@@ -248,6 +248,38 @@ fn small_fleet() -> TrainingSet<ResponseCase> {
     TrainingSet { name: "made".to_owned(), train, test: Vec::new() }
 }
 
+/// Widths are calibrated on what a model has learned from, and nothing else of it changes.
+fn check_calibrated_anew(model: &ResponseModel, learned: &[ResponseCase], new: &[ResponseCase]) {
+    let mut anew = model.copied().expect("a copy");
+    let error = recalibrate(&mut anew, new, &mut |_| ControlFlow::Continue(()))
+        .expect_err("it has not learned from these");
+    assert!(matches!(error, LearningError::TooFewCases { .. }), "{error}");
+    assert_eq!(anew.population(), model.population());
+    recalibrate(&mut anew, learned, &mut |_| ControlFlow::Break(())).expect("broken off");
+    assert_eq!(anew.population(), model.population());
+    recalibrate(&mut anew, learned, &mut |_| ControlFlow::Continue(())).expect("calibrated");
+    let [before, after] = [model, &anew].map(|model| model.population().expect("how cars differ"));
+    assert!(after.widths().widening > 0.0 && after.widths().tail_ratio >= 1.0);
+    assert_eq!(after.cars().len(), before.cars().len());
+    for (after_car, before_car) in after.cars().iter().zip(before.cars()) {
+        assert_eq!(after_car.strengths.widths, after.widths());
+        assert_eq!(after_car.strengths.mean, before_car.strengths.mean);
+        assert_eq!(after_car.strengths.covariance, before_car.strengths.covariance);
+    }
+}
+
+/// A model is the same once it is saved and read again.
+fn check_saved(model: &ResponseModel, case: &ResponseCase) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("any_car");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("fleet.safetensors");
+    model.save(&path, Existing::Replace).expect("saved");
+    let again = ResponseModel::load(&path).expect("loaded");
+    assert_eq!(again.population(), model.population());
+    let of = |model: &ResponseModel| end(model, (&case.vehicle, &case.states[0], &case.inputs));
+    assert_eq!(of(&again), of(model));
+}
+
 #[test]
 fn a_fleet_is_learned_from_saved_and_read_again() {
     let mut config = ResponseConfig::default();
@@ -283,7 +315,7 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     assert!(fits.iter().all(|fit| fit.is_after_epochs && !fit.what.is_empty()), "{fits:?}");
     assert!(fits.is_sorted_by_key(|fit| fit.done), "{fits:?}");
     let last = fits.last().expect("what is learned after the epochs");
-    assert!(fits.len() > 40 && last.done == last.n_steps, "{last:?} of {} reports", fits.len());
+    assert!(fits.len() > 25 && last.done == last.n_steps, "{last:?} of {} reports", fits.len());
     // Broken off at any of these, it is the network of the last epoch, which knows one kind of car.
     for n_before in [0, 6, fits.len() - 1] {
         let mut n_fits = 0;
@@ -300,15 +332,7 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     }
     let population = model.population().expect("how cars differ");
     assert_eq!(population.cars().len(), 4);
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("any_car");
-    std::fs::create_dir_all(&folder).expect("a folder");
-    let path = folder.join("fleet.safetensors");
-    model.save(&path, Existing::Replace).expect("saved");
-    let again = ResponseModel::load(&path).expect("loaded");
-    assert_eq!(again.population(), model.population());
-    let case = &set.train[0];
-    let of = |model: &ResponseModel| end(model, (&case.vehicle, &case.states[0], &case.inputs));
-    assert_eq!(of(&again), of(&model));
+    check_saved(&model, &set.train[0]);
     // A car that is like them is better predicted than by its data sheet, and better still once two
     // of its motions are known.
     let fifth = slippery_car(1500.0, 0.84);
@@ -326,6 +350,7 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     let (unseen_m, conditioned_m) = (error_m(&model), error_m(&conditioned));
     assert!(unseen_m < 0.6 * physics_m, "{unseen_m} m, by the data sheet {physics_m} m");
     assert!(conditioned_m < 0.8 * unseen_m, "{conditioned_m} m, before {unseen_m} m");
+    check_calibrated_anew(&model, &set.train, &fifth);
     // One car is no fleet, and a network of one car cannot be told of another.
     let of_one = TrainingSet { train: set.train[..3].to_vec(), ..set.clone() };
     let mut go_on = |_: &TrainingReport| ControlFlow::Continue(());
@@ -406,8 +431,7 @@ fn forecast(
     Ok(answer.complete().expect("nothing cancels").report)
 }
 
-/// At 288 km/h the car turns nearly three times within 4 s, nobody knows how often exactly, and the
-/// propagated moments had it 90 m short of where the same force takes the 4DOF model.
+/// At 288 km/h the car turns nearly three times within 4 s, nobody knows how often exactly.
 #[test]
 fn a_car_that_spins_fast_goes_where_the_physics_takes_it() {
     let mut fast = Scenario::example();

@@ -426,6 +426,16 @@ fn a_60_n_crash_is_said_in_words() {
         "peak force 60.00 N, less than cars have that touch at walking speed (1000 N); is the column in kN? (at 0.0500 s)"
     );
     assert!(check_file(&read(pulse("kN"), "").unwrap()).is_empty());
+    // A file that begins when the force is at its peak: half of the impulse is missing.
+    let text = pulse("kN");
+    let cut: Vec<&str> =
+        text.lines().enumerate().filter(|(i, _)| *i == 0 || *i > 50).map(|(_, row)| row).collect();
+    let flags = check_file(&read(cut.join("\n"), "").unwrap());
+    assert_eq!(flags.iter().map(|flag| flag.kind).collect::<Vec<_>>(), [FlagKind::BegunBefore]);
+    assert_eq!(
+        flags[0].to_string(),
+        "the force is 100 % of the peak at the first row: what came before it is missing in the impulse"
+    );
     // The right force over microseconds instead of milliseconds.
     let flags = check_file(&read(pulse("kN").replace("[ms]", "[µs]"), "").unwrap());
     assert_eq!(

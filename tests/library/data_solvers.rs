@@ -15,20 +15,20 @@ use impactlab_study::{Drive, Event, Library, MotionSource, Question, SeriesFile,
 use tempfile::TempDir;
 
 /// Instants of a collision, ms, and the force on the slave side along x, kN: units of kg, mm and ms.
-const TIME_MS: [f64; 5] = [0.0, 20.0, 40.0, 60.0, 80.0];
-const FORCE_KN: [f64; 5] = [0.0, 150.0, 90.0, 0.0, 0.0];
+pub(crate) const TIME_MS: [f64; 5] = [0.0, 20.0, 40.0, 60.0, 80.0];
+pub(crate) const FORCE_KN: [f64; 5] = [0.0, 150.0, 90.0, 0.0, 0.0];
 
-const DECK: &str = "deck=kg-mm-ms";
+pub(crate) const DECK: &str = "deck=kg-mm-ms";
 
-fn map(text: &str) -> ColumnMap {
+pub(crate) fn map(text: &str) -> ColumnMap {
     text.parse().unwrap()
 }
 
-fn read(path: &Path, text: &str) -> Loaded {
+pub(crate) fn read(path: &Path, text: &str) -> Loaded {
     read_any_series(path, Some(&map(text))).unwrap()
 }
 
-fn fx(loaded: &Loaded) -> Vec<f64> {
+pub(crate) fn fx(loaded: &Loaded) -> Vec<f64> {
     loaded.series.require(Channel::Fx).unwrap().to_vec()
 }
 
@@ -37,26 +37,26 @@ fn notes(loaded: &Loaded) -> String {
     notes.join("\n")
 }
 
-fn doubts(loaded: &Loaded) -> String {
+pub(crate) fn doubts(loaded: &Loaded) -> String {
     let doubts = loaded.notes.iter().filter(|note| note.is_doubt());
     doubts.map(|note| note.to_string() + "\n").collect()
 }
 
-fn assert_close(values: &[f64], expected: &[f64]) {
+pub(crate) fn assert_close(values: &[f64], expected: &[f64]) {
     assert_eq!(values.len(), expected.len(), "{values:?}");
     for (value, expected) in values.iter().zip(expected) {
         assert!((value - expected).abs() < 1e-6 * expected.abs().max(1.0), "{values:?}");
     }
 }
 
-fn file(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+pub(crate) fn file(folder: &TempDir, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.path().join(name);
     fs::write(&path, content).unwrap();
     path
 }
 
 /// A number as C writes it with `%E`.
-fn e(value: f64, decimals: usize) -> String {
+pub(crate) fn e(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$e}");
     let (mantissa, exponent) = text.split_once('e').unwrap();
     let exponent: i32 = exponent.parse().unwrap();
@@ -195,7 +195,7 @@ fn two_nodes_give_a_motion_with_its_heading() {
     assert!(error.to_string().contains("bad:"), "{error}");
 }
 
-fn record(command: u8, body: &[u8]) -> Vec<u8> {
+pub(crate) fn record(command: u8, body: &[u8]) -> Vec<u8> {
     let length = 9 + body.len() as u64;
     [&length.to_le_bytes()[..], &[command], body].concat()
 }
@@ -204,19 +204,19 @@ fn array(name: &str, kind: u8, values: &[u8]) -> Vec<u8> {
     record(3, &[&[kind, name.len() as u8][..], name.as_bytes(), values].concat())
 }
 
-fn floats(name: &str, values: &[f64]) -> Vec<u8> {
+pub(crate) fn floats(name: &str, values: &[f64]) -> Vec<u8> {
     let bytes: Vec<u8> = values.iter().flat_map(|value| (*value as f32).to_le_bytes()).collect();
     array(name, 9, &bytes)
 }
 
-fn ids(values: &[i32]) -> Vec<u8> {
+pub(crate) fn ids(values: &[i32]) -> Vec<u8> {
     array("ids", 3, &values.iter().flat_map(|id| id.to_le_bytes()).collect::<Vec<u8>>())
 }
 
-const LSDA: [u8; 8] = [8, 8, 8, 1, 1, 1, 0, 0];
+pub(crate) const LSDA: [u8; 8] = [8, 8, 8, 1, 1, 1, 0, 0];
 
 /// The forces of some states, by their indices.
-fn binout_forces(states: &[usize]) -> Vec<u8> {
+pub(crate) fn binout_forces(states: &[usize]) -> Vec<u8> {
     let mut bytes = [
         LSDA.to_vec(),
         record(2, b"/rcforc/metadata"),
@@ -351,6 +351,72 @@ fn parts_that_begin_alike_say_how_the_car_begins() {
     file(&folder, "binout0001", binout_momenta(1.0, [0.0, f64::NAN]));
     let (speed_m_s, said) = speed_of(&path, &format!("{DECK},sheet=contact 3 master")).unwrap();
     assert!(speed_m_s == 20.0 && said.contains("which parts of the model"), "{said}");
+}
+
+/// The momenta of two cars of 1000 kg, as text.
+///
+/// - `title`: that of the run;
+/// - `share`: what of the impulse of contact 3 the first one gains;
+/// - `starts_m_s`: their speeds at the start.
+fn matsum(title: &str, share: f64, starts_m_s: [f64; 2]) -> String {
+    let mut text = format!(" {title}\n{{BEGIN LEGEND}}\n Entity #        Title\n{{END LEGEND}}\n");
+    let mut gained = 0.0;
+    for (state, time_ms) in TIME_MS.into_iter().enumerate() {
+        let before = state.checked_sub(1).map_or(0.0, |before| FORCE_KN[before]);
+        gained += share * 10.0 * (FORCE_KN[state] + before);
+        text += &format!("\n\n time ={:>13}\n", e(time_ms, 4));
+        for (id, sign) in [(1, 1.0), (2, -1.0)] {
+            let x = 1000.0 * starts_m_s[id - 1] + sign * gained;
+            let y = sign * gained / 3.0;
+            let [x, y, vx, vy, zero] =
+                [x, y, x / 1e3, y / 1e3, 0.0].map(|value| format!("{:>13}", e(value, 4)));
+            text += &format!(
+                " mat.#={id:5}             inten={zero}     kinen={zero}\n \
+                 x-mom={x}     y-mom={y}     z-mom={zero}\n \
+                 x-rbv={vx}     y-rbv={vy}     z-rbv={zero}\n{:25}hgeng={zero}\n\n\n",
+                ""
+            );
+        }
+    }
+    text
+}
+
+/// An ASCII `rcforc` drove its car at 72 km/h, whatever the `matsum` beside it said.
+#[test]
+fn the_car_of_an_rcforc_drives_as_the_parts_of_its_matsum_begin() {
+    let folder = TempDir::new().unwrap();
+    let path = file(&folder, "rcforc", rcforc(-1.0));
+    let [slave, master] = ["slave", "master"].map(|side| format!("{DECK},sheet=contact 3 {side}"));
+    assert_eq!(parts_beside(&path), Vec::<PathBuf>::new());
+    assert!(speed_of(&path, &master).unwrap().1.contains("is not known"));
+    let momenta = file(&folder, "matsum", matsum("a run", 1.0, [0.0, 9.0]));
+    assert_eq!(parts_beside(&path), [path.clone(), momenta.clone()]);
+    let loaded = read(&path, &slave);
+    let text = notes(&loaded);
+    assert!(text.contains("momenta of the parts: matsum beside it"), "{text}");
+    assert!(text.contains("the parts that begin with (0, 0) m/s changes by the impulse"), "{text}");
+    assert_eq!(doubts(&loaded), "");
+    assert_eq!(speed_of(&path, &slave).unwrap().0, 0.0, "it stands, and does not drive 72 km/h");
+    let (speed_m_s, said) = speed_of(&path, &master).unwrap();
+    assert!((speed_m_s - 9.0).abs() < 1e-5 && said.contains("by their momenta"), "{said}");
+    // Another contact or the road acts, too.
+    file(&folder, "matsum", matsum("a run", 0.7, [0.0, 9.0]));
+    assert!(doubts(&read(&path, &slave)).contains("differs by 30.00 %"));
+    // What cannot be used is named.
+    let damaged = matsum("a run", 1.0, [0.0, 9.0]).replacen(" x-rbv=", " x-rbv=nan", 1);
+    for (text, expected) in [
+        (matsum("a run before", 1.0, [0.0, 9.0]), "is of another run, \"a run before\""),
+        (damaged, "matsum:10: "),
+        ("nothing\n".to_owned(), "has no states with momenta"),
+    ] {
+        file(&folder, "matsum", text);
+        let said = doubts(&read(&path, &slave));
+        assert!(said.contains(expected), "{said}");
+        assert!(speed_of(&path, &master).unwrap().1.contains("is not known"));
+    }
+    file(&folder, "matsum", matsum("a run", 1.0, [0.0, 9.0]));
+    let error = read_any_series(&momenta, None).unwrap_err().to_string();
+    assert!(error.contains("an LS-DYNA matsum file; open the rcforc beside it"), "{error}");
 }
 
 #[test]

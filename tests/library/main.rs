@@ -4,6 +4,7 @@
 //! All tests are in one program, because each test program would link all libraries again.
 
 mod any_car;
+mod atlas_check;
 mod case_file;
 mod cost_growth;
 mod data_bad_input;
@@ -15,6 +16,7 @@ mod data_loggers;
 mod data_maps;
 mod data_quality;
 mod data_shipped;
+mod data_solver_bodies;
 mod data_solvers;
 mod data_writes;
 mod dependencies;

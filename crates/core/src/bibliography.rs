@@ -46,6 +46,11 @@ sources! {
     /// program manuals of the HVE environment. Force of two outlines from their crush, share of the crush
     /// that is given back, printed example, stiffness of printed cars.
     EdsmacManual;
+    /// U.S. Environmental Protection Agency, *Optimization Model for reducing Emissions of Greenhouse
+    /// Gases from Automobiles (OMEGA)*, base year 2022: kerb weights of vehicles by engine and drive, as
+    /// in the public repository `USEPA/EPA_OMEGA_Model`
+    /// (`omega_model/test_inputs/vehicles_ldv_zevregions.csv`).
+    EpaOmega2022;
     /// Esri, *World files for raster datasets*, ArcGIS documentation, 2024. The six numbers of a world
     /// file; the last two are the middle of the left top pixel.
     EsriWorldFiles;
@@ -163,7 +168,6 @@ sources! {
     /// | `eq:Adaptive_pinn` to `eq:VSD_PINN_swish` | the response network: force, vehicle and time to the next state; its vehicle encoder |
     /// | `eq:adaptive_weights` | weight of the physics over the epochs and by the distance to the data |
     /// | `eq:consistency_loss`, `eq:all_loss` | loss that keeps the components apart; the whole loss of the response network |
-    /// | `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` | unscented transform of the state to the position; mixture of the position |
     /// | `eq:baseline:4dof` | the 4DOF model by explicit Euler steps of 10 ms, a baseline |
     PitPinnPaper;
     /// C. E. Rasmussen, C. K. I. Williams, *Gaussian Processes for Machine Learning*, MIT Press,
@@ -198,4 +202,7 @@ sources! {
     /// algorithms with simulation-based calibration*, arXiv:1804.06788, 2018. Ranks of the truth
     /// among the draws of the posterior.
     Talts2018;
+    /// Wikipedia, *Ford Crown Victoria*: kerb weight of the second generation, model years 1998 to
+    /// 2011; as copied at `piglix.com/piglix/Crown_Victoria`.
+    WikipediaCrownVictoria;
 }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Color32, Label, RichText, Sense, TextStyle, Ui, Vec2};
+use egui::{Color32, Label, Rangef, RichText, Sense, Stroke, TextStyle, Ui, Vec2, vec2};
 
 use crate::cell_map::scale_ui;
 use crate::theme;
-use impactlab_document::figure::{Figure, FigureElement};
+use impactlab_document::figure::{Figure, FigureElement, LineStyle, Path};
 
 /// Width of the number of the names that a legend has no room for, points.
 const NUMBER_WIDTH: f32 = 30.0;
@@ -36,7 +36,7 @@ pub fn legend_ui(ui: &mut Ui, figure: &Figure, hidden: &mut BTreeSet<String>, n_
             keep_together(ui, name);
             match element {
                 FigureElement::CellMap(map) => scale_ui(ui, map),
-                _ => dot_ui(ui, if is_hidden { Color32::TRANSPARENT } else { color }),
+                _ => marker_ui(ui, element, if is_hidden { Color32::TRANSPARENT } else { color }),
             }
             let label = ui.add(Label::new(text).extend().sense(Sense::click()));
             if label.on_hover_text("Click to hide or show it").clicked() && !hidden.remove(name) {
@@ -96,10 +96,32 @@ fn keep_together(ui: &mut Ui, name: &str) {
     }
 }
 
-fn dot_ui(ui: &mut Ui, color: Color32) {
+/// A dot in the colour of an element; for a dashed or dotted line two dashes or three small dots.
+fn marker_ui(ui: &mut Ui, element: &FigureElement, color: Color32) {
     let size = TextStyle::Small.resolve(ui.style()).size;
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(size), Sense::hover());
-    ui.painter().circle_filled(rect.center(), size / 3.0, color);
+    let (centre, painter) = (rect.center(), ui.painter());
+    let style = match element {
+        FigureElement::Line(series) | FigureElement::Path(Path { series, .. }) => series.style,
+        _ => LineStyle::Solid,
+    };
+    match style {
+        LineStyle::Solid => {
+            painter.circle_filled(centre, size / 3.0, color);
+        }
+        LineStyle::Dashed => {
+            let stroke = Stroke::new(theme::line_width(element.role()), color);
+            for [from, to] in [[-0.5, -0.1], [0.1, 0.5]] {
+                let x = [from, to].map(|share: f32| centre.x + share * size);
+                painter.hline(Rangef::new(x[0], x[1]), centre.y, stroke);
+            }
+        }
+        LineStyle::Dotted => {
+            for share in [-0.4, 0.0, 0.4] {
+                painter.circle_filled(centre + vec2(share * size, 0.0), size / 9.0, color);
+            }
+        }
+    }
 }
 
 #[cfg(test)]

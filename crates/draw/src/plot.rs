@@ -12,7 +12,7 @@ use egui_plot::{
     PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::axis_label::{label_that_fits, shortened};
+use crate::axis_label::{label_in_part, label_that_fits, seen_part, shortened};
 use crate::cell_map;
 use crate::legend::legend_ui;
 use crate::theme;
@@ -136,7 +136,12 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     let hidden = if options.legend { hidden_ui(ui, figure, options) } else { BTreeSet::new() };
     let height = (all - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let x_label = shortened(ui, &figure.x, ui.available_width() - y_axis_width(figure));
-    let y_label = label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT);
+    let (left, seen) = (ui.cursor().left(), seen_part(ui, height - X_AXIS_HEIGHT));
+    let y_label = match seen {
+        // Takes the room of the text, which is drawn within the part that is seen.
+        Some(_) => " ".to_owned(),
+        None => label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT),
+    };
     let mut plot = plot_with_axes(figure, options, [x_label, y_label]);
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
@@ -168,29 +173,21 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         if let Some(backdrop) = options.backdrop {
             draw_backdrop(plot_ui, backdrop);
         }
-        for points in options.lines_below.iter() {
-            let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::color(Role::Muted, dark));
-            let line = Line::new("", PlotPoints::from(points.clone())).stroke(stroke);
-            plot_ui.line(line.allow_hover(false));
-        }
+        draw_lines_below(plot_ui, options, dark);
         for element in figure.elements.iter().filter(|of| !hidden.contains(of.name())) {
             draw_element(plot_ui, dark, element, figure.log_y);
         }
-        if let Some(x) = options.cursor_x.filter(|x| reaches(figure, *x)) {
-            let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
-            plot_ui.vline(VLine::new("", x).stroke(stroke).allow_hover(false));
-        }
-        for x in options.span.into_iter().flatten().filter(|x| reaches(figure, *x)) {
-            let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::cursor_color(dark));
-            let line = VLine::new("", x).stroke(stroke).style(PlotLineStyle::dashed_loose());
-            plot_ui.vline(line.allow_hover(false));
-        }
+        draw_cursors(plot_ui, figure, options, dark);
         if figure.equal_aspect && options.pans {
             zoom_by_wheel(plot_ui);
         }
         let picking = plot_ui.response().is_pointer_button_down_on();
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
+    let has_axes = response.response.rect.left() > left;
+    if let Some(seen) = seen.filter(|_| has_axes) {
+        label_in_part(ui, &figure.y, left, seen);
+    }
     let transform = response.transform;
     let at = |point: Pos2| {
         let value = transform.value_from_position(point);
@@ -209,6 +206,29 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         clicked: response.response.interact_pointer_pos().filter(|_| is_clicked).map(at),
         view: [transform.bounds().min(), transform.bounds().max()],
         x_per_point: transform.dvalue_dpos()[0].abs(),
+    }
+}
+
+/// Thin lines below the elements.
+fn draw_lines_below(plot_ui: &mut PlotUi<'_>, options: &FigureOptions, dark: bool) {
+    for points in options.lines_below.iter() {
+        let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::color(Role::Muted, dark));
+        let line = Line::new("", PlotPoints::from(points.clone())).stroke(stroke);
+        plot_ui.line(line.allow_hover(false));
+    }
+}
+
+/// The upright lines of the cursor and of both ends of the span, where a curve is.
+fn draw_cursors(plot_ui: &mut PlotUi<'_>, figure: &Figure, options: &FigureOptions, dark: bool) {
+    let color = theme::cursor_color(dark);
+    if let Some(x) = options.cursor_x.filter(|x| reaches(figure, *x)) {
+        let line = VLine::new("", x).stroke(Stroke::new(theme::LINE_WIDTH, color));
+        plot_ui.vline(line.allow_hover(false));
+    }
+    for x in options.span.into_iter().flatten().filter(|x| reaches(figure, *x)) {
+        let stroke = Stroke::new(theme::THIN_LINE_WIDTH, color);
+        let line = VLine::new("", x).stroke(stroke).style(PlotLineStyle::dashed_loose());
+        plot_ui.vline(line.allow_hover(false));
     }
 }
 
@@ -374,7 +394,9 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, dark: bool, element: &'a FigureElemen
     };
     match element {
         FigureElement::Line(series) | FigureElement::Path(Path { series, .. }) => {
-            plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
+            let line = Line::new(&series.name, points(series)).stroke(stroke).style(style(series));
+            // Bands, which merge points in one column of pixels, thin out what is steep.
+            plot.line(line.allow_band(false));
         }
         FigureElement::Points(series) => {
             plot.points(Points::new(&series.name, points(series)).color(color).radius(3.0));

@@ -5,6 +5,7 @@ use crate::{Car, Cars};
 use impactlab_core::collision::{Footprint, OffOutline, Side};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2};
+use impactlab_core::vehicle::sheet::SheetQuantity;
 use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
 
 /// A quantity of a vehicle with the range over which the rules of the data sheet were fitted and the
@@ -71,7 +72,7 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
     (left + right) / STANDARD_GRAVITY_M_S2
 }
 
-/// What of a case lies outside of what rules, priors and model are known to hold for.
+/// What of a case lies outside of what rules, priors and model are known to hold for, and damage off its car.
 ///
 /// - `zones`: parts of the ground with their own friction.
 pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
@@ -80,7 +81,8 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
         true => car_caveats("car", &cars.struck).collect(),
         false => vehicle_caveats(cars),
     };
-    vehicles.into_iter().chain(road).chain(zone_caveats(zones)).collect()
+    let damage = damage_off_car(&evidence.damage, cars);
+    vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).collect()
 }
 
 /// What of both vehicles lies outside of what rules and model are known to hold for.
@@ -172,6 +174,36 @@ pub fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
     }
 }
 
+/// Damage that lies off the struck car by more than the errors of both, though not so far that it is refused.
+fn damage_off_car(damage: &Damage, cars: &Cars) -> Option<Caveat> {
+    let Measured { value, sigma } = damage.along()?;
+    let geometry = &cars.struck.parameters.geometry;
+    let (size, size_m, high) = match damage.side {
+        Side::Left | Side::Right => {
+            (SheetQuantity::Length, geometry.outer_length_m, geometry.cg_to_front_end_m)
+        }
+        Side::Front | Side::Rear => {
+            (SheetQuantity::Width, geometry.outer_width_m, geometry.outer_width_m / 2.0)
+        }
+    };
+    let low = high - size_m;
+    let off_m = (low - value).max(value - high);
+    let text = Phrase::new(
+        "the damage lies {0} off the struck car, which reaches from {1} to {2} along that side: check the place of \
+         the damage, or state length and width of the car",
+        "Der Schaden liegt {0} außerhalb des gestoßenen Fahrzeugs, das auf dieser Seite von {1} bis {2} reicht: Lage \
+         des Schadens prüfen oder Länge und Breite des Fahrzeugs angeben",
+    )
+    .with(PhraseValue::fixed(Quantity::Length, off_m, 2))
+    .with(PhraseValue::fixed(Quantity::Length, low, 2).bare())
+    .with(PhraseValue::fixed(Quantity::Length, high, 2));
+    let caveat = Caveat::new(CaveatKind::DoubtfulData, text)
+        .with_value("damage along the side [m]", value)
+        .with_range([low, high]);
+    let size_sigma_m = size_m * cars.struck.scatter(size).unwrap_or(0.0);
+    (off_m > sigma.hypot(size_sigma_m)).then_some(caveat)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -241,5 +273,20 @@ mod tests {
         assert_eq!(check(&evidence), Err(-8.0));
         evidence.damage.along_m = Some(Measured { value: -8.0, sigma: 2.0 }.into());
         assert_eq!(check(&evidence), Ok(()));
+    }
+
+    /// The rear of a car of which nothing is known is 2.7 m behind its CG, give or take 0.4 m.
+    #[test]
+    fn damage_a_little_off_the_car_is_named() {
+        let mut evidence = read(SPIN);
+        let mut off = |value: f64, sigma: f64, length_m: Option<f64>| {
+            evidence.damage.along_m = Some(Measured { value, sigma }.into());
+            evidence.struck_car.length_m = length_m;
+            damage_off_car(&evidence.damage, &Cars::new(&evidence, None, None)).is_some()
+        };
+        assert!(!off(-1.7, 0.1, None));
+        assert!(off(-3.2, 0.1, None));
+        assert!(!off(-3.2, 2.0, None));
+        assert!(!off(-3.2, 0.1, Some(6.5)));
     }
 }

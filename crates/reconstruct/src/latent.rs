@@ -191,6 +191,10 @@ latents! {
     ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
     /// Whether the brakes of the struck or the single car have an anti-lock system: below its threshold they do.
     AntiLockDecision: "anti_lock_decision", "", "whether the brakes have an anti-lock system";
+    /// How long the driver of a single car braked before the start, s.
+    BrakedBefore: "braked_before_s", "s", "driver braked before the start for";
+    /// Braking force there over the largest that the road can hold.
+    BrakedBeforeShare: "braked_before_share", "", "braking before the start over the friction";
 }
 
 impl Latent {

@@ -59,6 +59,9 @@ pub struct Posterior {
     pub impacts: Vec<Option<ImpactState>>,
     /// Yaw rate of the struck car of each particle at the end of the contact, rad/s; NaN of a single car.
     pub yaw_rates_after_rad_s: Vec<f64>,
+    /// Speed at which the single car of each particle began to brake before the start, m/s; NaN where nothing is
+    /// said of it, and of a collision.
+    pub speeds_before_braking_m_s: Vec<f64>,
     /// Independent particles that all of them are worth; none if the run was stopped before it had some
     /// of the posterior.
     pub ess: f64,
@@ -88,8 +91,17 @@ impl Posterior {
         let impact = |values: &LatentValues| (!is_of_single_car).then(|| model.impact(values));
         let impacts = values.iter().map(impact).collect();
         let yaw_rates_after_rad_s = model.yaw_rates_after_rad_s(&values);
+        let before_braking = |values: &LatentValues| model.speed_before_braking_m_s(values);
+        let speeds_before_braking_m_s = values.iter().map(before_braking).collect();
         let ess = values.len() as f64;
-        Self { values, impacts, yaw_rates_after_rad_s, ess, is_of_single_car }
+        Self {
+            values,
+            impacts,
+            yaw_rates_after_rad_s,
+            speeds_before_braking_m_s,
+            ess,
+            is_of_single_car,
+        }
     }
 
     /// Whether there are enough particles for intervals.
@@ -117,10 +129,13 @@ impl Posterior {
     }
 
     /// The quantities that the case is asked for: those of every collision and the speeds before its skids,
-    /// or those of a single car.
+    /// or those of a single car and the speed at which it began to brake before the start.
     pub fn asked(&self) -> Vec<ReconstructedQuantity> {
         if self.is_of_single_car() {
-            return ReconstructedQuantity::SINGLE_CAR.to_vec();
+            let brakes =
+                self.speeds_before_braking_m_s.first().is_some_and(|speed| !speed.is_nan());
+            let before = brakes.then_some(ReconstructedQuantity::CarSpeedBeforeBraking);
+            return ReconstructedQuantity::SINGLE_CAR.iter().copied().chain(before).collect();
         }
         let has = |quantity: &&ReconstructedQuantity| {
             self.values(**quantity).iter().all(|value| !value.is_nan())
@@ -130,11 +145,13 @@ impl Posterior {
     }
 
     fn points(&self) -> impl Iterator<Item = PosteriorPoint<'_>> {
-        let points = self.values.iter().zip(&self.impacts).zip(&self.yaw_rates_after_rad_s);
-        points.map(|((values, impact), yaw_rate_after_rad_s)| PosteriorPoint {
+        let rates = self.yaw_rates_after_rad_s.iter().zip(&self.speeds_before_braking_m_s);
+        let points = self.values.iter().zip(&self.impacts).zip(rates);
+        points.map(|((values, impact), (yaw_rate, before_braking))| PosteriorPoint {
             values,
             impact: impact.as_ref(),
-            yaw_rate_after_rad_s: *yaw_rate_after_rad_s,
+            yaw_rate_after_rad_s: *yaw_rate,
+            speed_before_braking_m_s: *before_braking,
         })
     }
 

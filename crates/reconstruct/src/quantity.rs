@@ -88,12 +88,15 @@ quantities! {
     CarSideslip: "sideslip_rad", "rad", |point| point.values.get(Latent::CarSideslip);
     /// Its yaw rate there, rad/s.
     CarYawRate: "yaw_rate_rad_s", "rad/s", |point| point.values.get(Latent::CarYawRate);
+    /// Speed at which a single car began to brake before the start, m/s.
+    CarSpeedBeforeBraking: "speed_before_braking_m_s", "m/s",
+        |point| point.speed_before_braking_m_s;
     --- StruckSpeedBeforeSkid, StrikingSpeedBeforeSkid
-    --- CarSpeed, CarSideslip, CarYawRate
+    --- CarSpeed, CarSideslip, CarYawRate, CarSpeedBeforeBraking
 }
 
 impl ReconstructedQuantity {
-    /// Those that a single car has.
+    /// Those that every single car has.
     pub const SINGLE_CAR: &'static [Self] =
         &[Self::CarSpeed, Self::CarSideslip, Self::CarYawRate, Self::RoadFriction];
 
@@ -112,6 +115,7 @@ impl ReconstructedQuantity {
             Self::CarSpeed => "speed of the car at the start",
             Self::CarSideslip => "sideslip angle at the start",
             Self::CarYawRate => "yaw rate at the start",
+            Self::CarSpeedBeforeBraking => "speed of the car when braking began",
         }
     }
 
@@ -124,7 +128,8 @@ impl ReconstructedQuantity {
             | Self::DeltaVStruck
             | Self::StruckSpeedBeforeSkid
             | Self::StrikingSpeedBeforeSkid
-            | Self::CarSpeed => Quantity::Speed,
+            | Self::CarSpeed
+            | Self::CarSpeedBeforeBraking => Quantity::Speed,
             Self::HeadingDifference | Self::CarSideslip => Quantity::Angle,
             Self::RoadFriction => Quantity::Ratio,
             Self::StruckYawRate | Self::CarYawRate => Quantity::AngularVelocity,
@@ -187,6 +192,7 @@ pub(crate) struct PosteriorPoint<'a> {
     pub(crate) values: &'a LatentValues,
     pub(crate) impact: Option<&'a ImpactState>,
     pub(crate) yaw_rate_after_rad_s: f64,
+    pub(crate) speed_before_braking_m_s: f64,
 }
 
 impl PosteriorPoint<'_> {

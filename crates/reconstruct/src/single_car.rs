@@ -6,11 +6,23 @@
 //!
 //! x: where the earliest mark begins, ρ: its wheel from the CG; or a stated place, and ρ = 0. χ: course, β:
 //! sideslip angle.
+//!
+//! Braking before the start, where there are no marks, tells the speed at which it began:
+//!
+//! ```text
+//! v₀ = v + a t        a = g (p μ + G)/√(1 + G²)
+//! ```
+//!
+//! v: speed at the start, t: how long the driver braked before, p: share of the friction, μ: peak friction of the
+//! tires along their planes, G: grade uphill along χ.
+//!
+//! Source: [`Brach2011`](impactlab_core::bibliography::Brach2011), braking on a grade.
 
+use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::VehicleState;
 
 use crate::evidence::{Evidence, Mark};
-use crate::{Cars, Latent, LatentValues};
+use crate::{Cars, ForwardModel, Latent, LatentValues};
 
 /// Standard deviation of the course by the first piece of a mark, rad: a car that turns, and points that are
 /// measured from each other. Assumed.
@@ -128,6 +140,30 @@ impl StartPlace {
             y_m,
             ..VehicleState::default()
         }
+    }
+}
+
+/// Direction in which the car of a particle moves at the start, rad.
+fn course_rad(values: &LatentValues) -> f64 {
+    let heading_rad = values.get(Latent::StartHeading);
+    match heading_rad.is_nan() {
+        true => values.get(Latent::StartCourse),
+        false => heading_rad + values.get(Latent::CarSideslip),
+    }
+}
+
+impl ForwardModel {
+    /// Speed at which the single car of a particle began to brake, m/s; NaN where nothing is said of braking
+    /// before the start.
+    pub(crate) fn speed_before_braking_m_s(&self, values: &LatentValues) -> f64 {
+        let [friction, tires, along] =
+            [Latent::RoadFriction, Latent::TireFrictionFactor, Latent::LongitudinalFrictionRatio]
+                .map(|latent| values.get(latent));
+        let drag = values.get(Latent::BrakedBeforeShare) * friction * tires * along;
+        let grade = self.cars.struck.parameters.slope.along(course_rad(values));
+        let deceleration_m_s2 =
+            STANDARD_GRAVITY_M_S2 * (drag + grade) / (1.0 + grade * grade).sqrt();
+        values.get(Latent::CarSpeed) + deceleration_m_s2 * values.get(Latent::BrakedBefore)
     }
 }
 

@@ -129,6 +129,52 @@ fn a_car_with_anti_lock_brakes_was_faster_than_one_whose_wheels_slid() {
     assert_eq!(read(&said.to_toml()), said);
 }
 
+/// Braking that left no marks took speed away before them: g times its share of the friction, with the grade,
+/// times its duration.
+#[test]
+fn braking_before_the_start_tells_the_speed_at_which_it_began() {
+    let skid = |start: &str, grade: &str| {
+        let friction = format!("friction_sigma = 0.01\n{grade}");
+        let text = SKID
+            .replace("drag_factor", "friction")
+            .replace("friction_sigma = 0.01\n", &friction)
+            .replacen("heading_deg = 0\n", &format!("heading_deg = 0\n{start}"), 1);
+        read(&text)
+    };
+    let gained_m_s = |grade: &str| {
+        let before = "braked_before_s = [0.6, 0.62]\nbraked_before_share = [0.5, 0.51]\n";
+        let target = target(&skid(before, grade));
+        let posterior = Posterior::new(&target, &sampled(&target, 120, 0));
+        let quantities = posterior.quantities();
+        let names: Vec<&str> = quantities.iter().map(|of| of.name).collect();
+        assert_eq!(names[4..], ["speed_before_braking_m_s"]);
+        let medians = [0, 4].map(|at| quantities[at].estimate.median);
+        medians[1] - medians[0]
+    };
+    // Tires of cars and of a friction test differ, and so do those along and across.
+    let level_m_s = STANDARD_GRAVITY_M_S2 * 0.505 * 0.7 * 0.61;
+    let gained_level_m_s = gained_m_s("");
+    assert!((gained_level_m_s / level_m_s - 1.0).abs() < 0.3, "{gained_level_m_s} m/s");
+    let uphill_m_s = gained_m_s("grade = 0.1\n") - gained_level_m_s;
+    let expected_m_s = STANDARD_GRAVITY_M_S2 * 0.1 * 0.61;
+    assert!((uphill_m_s / expected_m_s - 1.0).abs() < 0.3, "{uphill_m_s}, {expected_m_s} m/s");
+    let evidence = skid("braked_before_s = [0.2, 0.4]\n", "");
+    assert_eq!(read(&evidence.to_toml()), evidence);
+    // A driver who braked before the start brakes there.
+    let with = read(&format!("{CASES}[wheels]\n").replacen(
+        "heading_deg = 0\n",
+        "heading_deg = 0\nbraked_before_s = [0.2, 0.4]\n",
+        1,
+    ));
+    let model = ForwardModel::new(&with, Cars::new(&with, None, None));
+    let mut rng = random_stream(7, "braking before", 0);
+    for _ in 0..200 {
+        let z = standard_normals(model.prior().components().len(), &mut rng);
+        let values = model.prior().values(&z);
+        assert!(values.brakes() && values.get(Latent::BrakeStart) <= 0.0);
+    }
+}
+
 /// Half of the draws have an anti-lock system where nobody says it, and only where the driver may brake.
 #[test]
 fn anti_lock_brakes_are_drawn_where_nobody_says_them() {

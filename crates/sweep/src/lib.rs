@@ -21,6 +21,7 @@ mod outcome;
 mod pit;
 mod plan;
 mod plan_file;
+mod plan_paths;
 mod points;
 mod row;
 mod rows;

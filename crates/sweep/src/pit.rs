@@ -67,6 +67,23 @@ impl PitInput {
         self.into()
     }
 
+    /// What it is called in a picture.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::TargetSpeed => "Speed of the struck car",
+            Self::Closing => "Closing speed across the lane",
+            Self::Faster => "Striking car faster along the lane",
+            Self::Angle => "Angle between the headings",
+            Self::Slip => "Heading beyond its way",
+            Self::Overlap => "Contact ahead of the rear axle",
+            Self::YawRate => "Yaw rate of the striking car",
+            Self::Friction => "Peak friction of the road",
+            Self::Pair => "Striking car and struck car",
+            Self::Esc => "Stability control",
+            Self::Driver => "Driver of the struck car",
+        }
+    }
+
     /// The input of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         let all = <Self as strum::VariantArray>::VARIANTS;

@@ -36,8 +36,12 @@ pub const MOST_CHUNKS: u64 = 10_000_000;
 /// Name of the input that stands for all that a draw leaves open.
 pub const UNKNOWNS: &str = "unknowns";
 
-/// Version of the format of a resolved plan.
+/// Version of the format of a resolved plan that reads no files.
 pub(crate) const FORMAT: u32 = 1;
+
+/// That of one that reads files: its file says them relative to its folder, so that both can be moved together.
+/// In plans of the first format they stand as they were given.
+pub(crate) const FORMAT_OF_FILES: u32 = 2;
 
 /// A resolved plan.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -174,11 +178,14 @@ impl Plan {
         start..start.saturating_add(self.chunk).min(self.n_rows())
     }
 
-    /// SHA-256 of the plan, hexadecimal.
+    /// SHA-256 of the plan, hexadecimal. Files count by their content, wherever they are.
     pub fn sha256(&self) -> String {
+        let bytes = match self.format {
+            FORMAT_OF_FILES => serde_json::to_vec(&self.by_content()),
+            _ => serde_json::to_vec(self),
+        };
         // A plan is made of numbers, texts and maps with texts as keys, which JSON can write.
-        let bytes = serde_json::to_vec(self).unwrap_or_default();
-        sha256_hex([bytes.as_slice()])
+        sha256_hex([bytes.unwrap_or_default().as_slice()])
     }
 
     /// Whether a row leaves something open, which is drawn from its own stream.
@@ -271,6 +278,7 @@ impl Plan {
         let text = read_utf8(&path, MAX_SETTINGS_BYTES)?;
         let plan: Self = serde_json::from_str(&text)
             .map_err(|source| SweepError::NoPlan { path: path.clone(), source })?;
+        let plan = plan.with_paths_begun_at(folder)?;
         match plan.fault() {
             None => Ok(plan),
             Some((key, expected)) => {
@@ -290,7 +298,7 @@ impl Plan {
         if Self::stored(folder).is_ok_and(|there| there == *self) {
             return Ok(());
         }
-        let text = serde_json::to_string_pretty(self)
+        let text = serde_json::to_string_pretty(&self.with_paths_ended_at(folder)?)
             .map_err(|source| SweepError::NoPlan { path: path.clone(), source })?;
         write_atomically(&path, Existing::Refuse, |out| writeln!(out, "{text}"))?;
         Ok(())
@@ -334,8 +342,8 @@ impl Plan {
     pub(crate) fn fault(&self) -> Option<(String, String)> {
         let is_count = |n: u64, most: u64| (1..=most).contains(&n);
         let counted = |key: &str, most: u64| Some((key.to_owned(), format!("1 to {most}")));
-        if self.format != FORMAT {
-            return Some(("format".to_owned(), FORMAT.to_string()));
+        if !(FORMAT..=FORMAT_OF_FILES).contains(&self.format) {
+            return Some(("format".to_owned(), format!("{FORMAT} to {FORMAT_OF_FILES}")));
         }
         if !is_count(self.n, MOST_ROWS) || !is_count(self.n_rows(), MOST_ROWS) {
             return Some(("n".to_owned(), format!("1 to {MOST_ROWS} rows in all")));

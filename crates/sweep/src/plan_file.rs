@@ -30,9 +30,10 @@ use serde_json::Value;
 use crate::SweepError;
 use crate::pit::PitInput;
 use crate::plan::{
-    Design, FORMAT, PickedOutcome, PitQuestion, Plan, RequestQuestion, SweptQuestion,
-    VehiclePairIds, files_of, networks,
+    Design, FORMAT, FORMAT_OF_FILES, PickedOutcome, PitQuestion, Plan, RequestQuestion,
+    SweptQuestion, VehiclePairIds, files_of, networks,
 };
+use crate::row::sampled_requests;
 use crate::vary::{Distribution, Vary};
 use impactlab_core::collision::{SCENARIO_PRESETS, Scenario};
 use impactlab_core::data::{MAX_SETTINGS_BYTES, TomlError, TomlFile, read_utf8};
@@ -202,15 +203,23 @@ impl Plan {
             let value = if file.contains(&key) { "this" } else { "missing" };
             return Err(file.wrong_value(&inner.unwrap_or(key), value, &expected).into());
         }
+        let wrong = |source| SweepError::Request { path: file.path.to_owned(), source };
         if let SweptQuestion::Request(question) = &self.question {
             // The first row shows whether values and places go together.
-            let requests = crate::row::sampled_requests(question, &self)
-                .map_err(|source| SweepError::Request { path: file.path.to_owned(), source })?;
+            let requests = sampled_requests(question, &self).map_err(wrong)?;
             if requests.iter().any(|request| request.written_path().is_some()) {
                 let expected = "a request that writes no file itself";
                 return Err(file.wrong_value("request.file", "", expected).into());
             }
-            self.files = files_of(&requests)?;
+            let here = std::env::current_dir()
+                .map_err(|source| SweepError::Input { path: file.path.to_owned(), source })?;
+            self = self.with_absolute_paths(&requests, &here).map_err(wrong)?;
+        }
+        if let SweptQuestion::Request(question) = &self.question {
+            self.files = files_of(&sampled_requests(question, &self).map_err(wrong)?)?;
+            if !self.files.is_empty() {
+                self.format = FORMAT_OF_FILES;
+            }
         }
         Ok(self)
     }

@@ -373,7 +373,9 @@ impl State {
     /// Starts to write one zip of the case and its files.
     pub(in crate::app) fn pack_case(&mut self, path: PathBuf, existing: Existing) {
         self.capture();
-        self.case.file.note(format!("packed into {}", path.display()));
+        // The file of the case goes to others, the folders of this machine do not.
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        self.case.file.note(format!("packed into {name}"));
         let file = self.case.file.clone();
         let key = TaskKey::Write(path.clone());
         self.session.tasks.start(

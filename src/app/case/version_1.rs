@@ -207,6 +207,21 @@ fn source_of(
     }
 }
 
+/// What the forms and the question about a motion say under the same names.
+const OF_MOTION: [&str; 11] = [
+    "vehicle",
+    "bullet",
+    "equations",
+    "integrator",
+    "friction",
+    "friction_sigma",
+    "duration_s",
+    "ending",
+    "until_rest",
+    "vehicle_draws",
+    "seed",
+];
+
 /// The simulation of the forms, whose settings had the names of those of the question.
 fn simulation(
     forms: &Value,
@@ -216,8 +231,8 @@ fn simulation(
     let is_open = matches!(source, MotionSource::Drive(_));
     let mut settings = forms["project"].clone();
     if let Some(fields) = settings.as_object_mut() {
+        fields.retain(|key, _| OF_MOTION.contains(&key.as_str()));
         fields.insert("source".to_owned(), serde_json::to_value(source)?);
-        fields.remove("site");
     }
     let simulate: SimulateRequest = serde_json::from_value(settings)?;
     Ok(SimulateRequest {

@@ -189,7 +189,7 @@ fn force_ui(ui: &mut Ui, project: &mut Project, session: &Session, commands: &mu
         let name = ui.label("Force curves");
         count_field(ui, &mut request.draws, &DRAWS, 0.2)
             .labelled_by(name.id)
-            .on_hover_text("Whole curves drawn from the predicted force, each as likely; each drives its own distribution of motions");
+            .on_hover_text("Whole curves drawn from the predicted force, each as likely; each drives motions of its own");
         let name = ui.label("Seed");
         seed_field(ui, &mut request.seed).labelled_by(name.id);
     });
@@ -240,7 +240,7 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
     ui.horizontal_wrapped(|ui| {
         ui.strong("Show");
         ui.checkbox(&mut view.components, "components")
-            .on_hover_text("Mean path of each component of the mixture, 15 at most");
+            .on_hover_text("Mean paths of motions that end near each other, 15 at most");
         ui.checkbox(&mut view.simulation, "4DOF model");
         ui.checkbox(&mut view.reference, "recorded motion");
         let follow = ui.checkbox(&mut view.follow, "follow");

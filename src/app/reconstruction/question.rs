@@ -50,8 +50,8 @@ pub struct PreparedReconstruction {
     paths: ReconstructedPaths,
     /// The same of each course of events.
     mode_paths: Vec<ReconstructedPaths>,
-    /// The quantities that can be drawn: those that every case of its kind has.
-    quantities: &'static [ReconstructedQuantity],
+    /// The quantities that can be drawn: those that the case is asked for.
+    quantities: Vec<ReconstructedQuantity>,
     /// Values of each of them before the evidence, in their order.
     priors: Vec<Vec<f64>>,
     /// Ends of the 90 % interval of each component of the prior after the evidence.
@@ -73,8 +73,8 @@ impl PreparedReconstruction {
     }
 
     /// The quantities that can be drawn.
-    pub fn quantities(&self) -> &'static [ReconstructedQuantity] {
-        self.quantities
+    pub fn quantities(&self) -> &[ReconstructedQuantity] {
+        &self.quantities
     }
 
     /// Values of a quantity before the evidence: draws, of which those of a number belong together.
@@ -105,18 +105,15 @@ impl Question for ReconstructionQuestion {
         let answered = self.sampled(library, observer)?;
         Ok(answered.map(|answer| {
             let modes = answer.report.modes.iter();
-            let quantities = match answer.posterior.is_of_single_car() {
-                true => ReconstructedQuantity::SINGLE_CAR,
-                false => ReconstructedQuantity::ALL,
-            };
+            let quantities = answer.posterior.asked();
             let components = answer.target.model().prior().components().iter();
             PreparedReconstruction {
                 paths: ReconstructedPaths::from_answer(&answer),
                 mode_paths: modes
                     .map(|mode| ReconstructedPaths::from_mode(&answer, mode))
                     .collect(),
-                quantities,
                 priors: quantities.iter().map(|of| prior_values(&answer.target, *of)).collect(),
+                quantities,
                 intervals_90: components
                     .map(|component| answer.posterior.interval_90_of(component.latent))
                     .collect(),

@@ -24,7 +24,7 @@ pub struct ResponseView {
     pub window_s: [f64; 2],
     /// Whether the scene follows the vehicle and shows only its surroundings at the current time.
     pub follow: bool,
-    /// Whether the paths of the mixture components are drawn.
+    /// Whether the mean paths of motions that end near each other are drawn.
     pub components: bool,
     /// Whether the simulated motion of the 4DOF model is drawn.
     pub simulation: bool,

@@ -213,6 +213,14 @@ mod tests {
         assert_eq!(found("2020 toyota"), ["toyota-corolla-2020"]);
         assert_eq!(found("car 2020"), ["toyota-corolla-2020"]);
         assert!(found("pickup").contains(&"ford-f-150-2004"), "{:?}", found("pickup"));
+        let police = [
+            "chevrolet-tahoe-2022",
+            "chevrolet-tahoe-4wd-2022",
+            "dodge-charger-2022",
+            "ford-crown-victoria-2010",
+            "ford-explorer-2020",
+        ];
+        assert_eq!(found("police"), police);
         assert_eq!(found("").len(), BuiltInVehicle::all().len());
         assert_eq!(found("trabant"), [""; 0]);
         assert_eq!(

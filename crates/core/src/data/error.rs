@@ -217,8 +217,8 @@ pub enum DataError {
         example: &'static str,
     },
     /// No column holds a channel that is needed.
-    #[error("{}:{line}: no column for {needed}; found {}; say which it is, e.g. --map {}=COLUMN, or in the mapping dialog",
-        path.display(), list(found), channel.short_name())]
+    #[error("{}:{line}: no column for {needed}; found {}; say which it is, e.g. --map {}=COLUMN, or in the mapping dialog{}",
+        path.display(), list(found), channel.short_name(), or_recorder(found))]
     MissingColumn {
         /// The file that was read or written.
         path: PathBuf,
@@ -602,6 +602,14 @@ impl DataError {
 /// What helps where a time goes back, as that of a clock that begins again.
 fn or_go_on(before_s: f64, after_s: f64) -> &'static str {
     if after_s < before_s { ", or let a clock go on that begins again there" } else { "" }
+}
+
+/// What helps where a column is a change of velocity, which a recorder writes and no channel is.
+fn or_recorder(found: &[String]) -> &'static str {
+    match found.iter().any(|name| spelling::is_delta_v(&spelling::letters_and_digits(name))) {
+        true => "; a table of an event data recorder, with Δv: impactlab import --recorder",
+        false => "",
+    }
 }
 
 /// The text of an error in a sheet: instead of `file:line:column`, it names file, sheet and cell.

@@ -11,7 +11,6 @@ const EXAMINED_LINES: usize = 60;
 /// What to do with a program that measures or simulates.
 const EXPORT: &str = "export the channels over time as CSV";
 const EXPORT_FORCE: &str = "export the force over time as CSV (time, x, y)";
-const EXPORT_MOTION: &str = "export the motion of a node over time as CSV (time, x, y, yaw)";
 const AS_NUMBERS: &str = "a motion has to be given as numbers, as CSV";
 const IN_SITE: &str = "name it in a site file as the ground of a scene, [dxf] file = \"…\"";
 const AS_WORKBOOK: &str = "save the sheet as .xlsx or as CSV";
@@ -126,7 +125,6 @@ fn solver_output(line: &str) -> Option<(&'static str, &'static str)> {
     let closed: String = line.chars().filter(|c| !c.is_whitespace()).collect();
     let titles = [
         ("nodalforcegroupoutput", "an LS-DYNA nodfor file", EXPORT_FORCE),
-        ("rigidbodymotionattime", "an LS-DYNA rbdout file", EXPORT_MOTION),
         ("rigidwallforces", "an LS-DYNA rwforc file", EXPORT_FORCE),
         ("dtofcyclecontrolledby", "an LS-DYNA glstat file", EXPORT),
         ("zzzzzeor", "a time history of Radioss as text", "have it written in binary, as is usual"),

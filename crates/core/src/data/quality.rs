@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
-    contact_interval, cut_at_s,
+    contact_interval, cut_at_s, quality_motion,
 };
 use crate::numerics::quantile_of_sorted;
 
@@ -84,6 +84,14 @@ pub enum FlagKind {
     /// The vehicles are still in contact at the end of the record. The value is the force at the
     /// end as a share of the peak, or 1 if only the table of cases states it.
     NotSeparated,
+    /// The force at the first row, as a share of the peak: what came before it is not in the file.
+    BegunBefore,
+    /// Distance from one row of a motion to the next, m, which no vehicle goes in the time.
+    PathJump,
+    /// Largest speed along a path, m/s, which is that of no collision.
+    SlowPath,
+    /// Turn of a vehicle from one row to the next, rad, which may as well be one to the other side.
+    YawStep,
     /// A corner of the striking vehicle stays hooked to the struck vehicle, as the table of cases
     /// states.
     Hooked,
@@ -104,6 +112,10 @@ impl FlagKind {
             Self::LongContact => "long",
             Self::NoForce => "no force",
             Self::NotSeparated => "cut",
+            Self::BegunBefore => "begun",
+            Self::PathJump => "jump",
+            Self::SlowPath => "slow",
+            Self::YawStep => "turn?",
             Self::Hooked => "hooked",
         }
     }
@@ -189,15 +201,19 @@ pub fn check_series(series: &TimeSeries, sampling: Sampling) -> Vec<Flag> {
 /// Checks a single file, whose force may be in another unit than it was read in.
 ///
 /// - returns the findings of [`check_series`], and whether peak and impulse are those of a collision
-///   of cars.
+///   of cars, whether the file begins before the force does, whether a vehicle can go along its path, and
+///   whether its rows tell to which side it turns.
 pub fn check_file(loaded: &Loaded) -> Vec<Flag> {
     let sampling = loaded.force_sampling();
     let mut flags = check_series(&loaded.series, sampling);
+    flags.extend(quality_motion::check_path(&loaded.series));
+    flags.extend(quality_motion::check_yaw(&loaded.series));
     let force = ForceHistory::from_series(&loaded.series, sampling).ok();
     let peak = force.as_ref().and_then(ForceHistory::peak).filter(|(peak_n, _)| *peak_n > 0.0);
     let (Some(force), Some((peak_n, peak_at))) = (force, peak) else {
         return flags;
     };
+    flags.extend(begun_before(&force, peak_n));
     let stated = |kind, value, limit| Flag { value, limit, ..stated(kind, Severity::Warning) };
     if peak_n < SMALL_FORCE_N {
         flags.push(stated(FlagKind::SmallForce, peak_n, SMALL_FORCE_N).at(peak_at));
@@ -272,6 +288,13 @@ fn check_force(force: &ForceHistory) -> Vec<Flag> {
 
 fn magnitudes(force: &ForceHistory) -> impl Iterator<Item = f64> + '_ {
     force.fx_n.iter().zip(&force.fy_n).map(|(x, y)| x.hypot(*y))
+}
+
+/// A force that is there at the first row; a sample that is a mean over its step may be.
+fn begun_before(force: &ForceHistory, peak_n: f64) -> Option<Flag> {
+    let first_n = magnitudes(force).next().filter(|_| force.sampling == Sampling::Instant)?;
+    let (kind, severity) = (FlagKind::BegunBefore, Severity::Warning);
+    Flag::beyond(kind, severity, first_n / peak_n, ONSET_SHARE_OF_PEAK)
 }
 
 /// Mean force over the first half of the samples before the force has certainly begun, as a share

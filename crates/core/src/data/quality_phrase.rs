@@ -59,7 +59,34 @@ impl Flag {
             | FlagKind::LongContact
             | FlagKind::NoForce
             | FlagKind::NotSeparated
+            | FlagKind::BegunBefore
             | FlagKind::Hooked => self.finding_of_force(),
+            FlagKind::PathJump | FlagKind::SlowPath | FlagKind::YawStep => self.finding_of_path(),
+        }
+    }
+
+    fn finding_of_path(&self) -> Phrase {
+        match self.kind {
+            FlagKind::PathJump => Phrase::new(
+                "the position jumps by {0} from one row to the next; remove rows without a position, or check \
+                 the units of positions and time",
+                "Die Position springt von einer Zeile zur nächsten um {0}; Zeilen ohne Position entfernen oder \
+                 die Einheiten von Positionen und Zeit prüfen",
+            )
+            .with(PhraseValue::significant(Quantity::Length, self.value)),
+            FlagKind::YawStep => Phrase::new(
+                "the yaw angle turns by {0} from one row to the next, which may as well be a turn to the other \
+                 side: record it more often, or a yaw rate beside it",
+                "Der Gierwinkel ändert sich von einer Zeile zur nächsten um {0}; ebenso gut kann das Fahrzeug \
+                 andersherum gedreht haben: öfter aufzeichnen oder die Gierrate dazu",
+            )
+            .with(PhraseValue::fixed(Quantity::Angle, self.value, 0)),
+            _ => Phrase::new(
+                "nowhere along the path is the vehicle faster than {0}; check the units of time and positions",
+                "Nirgends auf dem Weg ist das Fahrzeug schneller als {0}; die Einheiten von Zeit und Positionen \
+                 prüfen",
+            )
+            .with(PhraseValue::significant(Quantity::Speed, self.value)),
         }
     }
 
@@ -98,6 +125,11 @@ impl Flag {
                 "still in contact at the end: the impulse is not complete",
                 "Am Ende besteht noch Kontakt: Der Stoßantrieb ist unvollständig",
             ),
+            FlagKind::BegunBefore => Phrase::new(
+                "the force is {0} of the peak at the first row: what came before it is missing in the impulse",
+                "In der ersten Zeile beträgt die Kraft {0} des Höchstwerts: Was vorher war, fehlt im Stoßantrieb",
+            )
+            .with(PhraseValue::fixed(Quantity::Ratio, self.value, 0).in_unit("%")),
             _ => Phrase::new(
                 "the striking vehicle's corner stays caught",
                 "Die Ecke des stoßenden Fahrzeugs bleibt verhakt",

@@ -276,6 +276,11 @@ pub(crate) fn letters_and_digits(text: &str) -> String {
     letters.flat_map(char::to_lowercase).collect()
 }
 
+/// Whether letters and digits of a header name a change of velocity.
+pub(crate) fn is_delta_v(key: &str) -> bool {
+    ["deltav", "δv", "velocitychange"].iter().any(|word| key.contains(word))
+}
+
 /// Reduces a unit to one spelling, so that `m/s²`, `m/s^2`, `m_s2` and `m/sec2` are equal, and so
 /// are `deg/s`, `°/s` and `degrees per second`.
 fn unit_key(text: &str) -> String {

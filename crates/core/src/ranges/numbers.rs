@@ -62,6 +62,10 @@ ranges! {
         "standard deviation of the steering ratio; 0 if it is known exactly";
     BRAKE_SHARE: "braking" = real(Quantity::Ratio, [0.0, 3.0]),
         "braking force over the largest that the road can hold; more than 1 locks the wheels";
+    BRAKED_BEFORE: "braking before the start" = real(Quantity::Time, [0.0, 20.0]),
+        "how long a driver braked before the first mark";
+    BRAKED_SHARE: "share of the friction" = real(Quantity::Ratio, [0.0, 1.0]),
+        "braking force over the largest that the road can hold, without a mark";
     BRAKE_FRONT_SHARE: "front share of the braking" = real(Quantity::Ratio, [0.0, 1.0]),
         "share of the front axle in the braking force";
     BRAKE_RISE: "rise of a control" = real(Quantity::Time, [0.01, 60.0]),

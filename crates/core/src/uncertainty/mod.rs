@@ -1,7 +1,6 @@
 //! Probability distributions of predictions: mixtures of normal distributions over whole force
 //! curves, over scalars and over positions in the plane, with their densities, draws, quantiles and
-//! scores; and the unscented transform. And the caveats of an answer: what it cannot promise and what
-//! it rests on.
+//! scores. And the caveats of an answer: what it cannot promise and what it rests on.
 //!
 //! ```
 //! use impactlab_core::uncertainty::{CurveComponent, CurveMixture};
@@ -45,7 +44,6 @@ mod scores;
 mod planar;
 mod planar_draws;
 mod planar_grid;
-mod unscented;
 
 pub use bands::{CurveBand, CurveBands};
 pub use caveat::{Caveat, CaveatQuantity, CaveatText};
@@ -56,8 +54,7 @@ pub use error::MixtureError;
 pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
 pub use planar::{PlanarMixture, PlanarPart};
-pub use planar_draws::pose_groups;
+pub use planar_draws::{pose_groups, predictive_factor};
 pub use planar_grid::{PlanarGrid, PlanarKernel};
 pub use sample::CurveQuantities;
 pub use scores::{distance_n, energy_score_n, sample_crps};
-pub use unscented::{Unscented, UnscentedWeights};

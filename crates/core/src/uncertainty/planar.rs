@@ -12,10 +12,13 @@
 //! Source: R. J. Hyndman, Computing and Graphing Highest Density Regions, The American Statistician
 //! 50 (1996) 120–126.
 
+use pulp::{Simd, WithSimd};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
+use rayon::prelude::*;
 
+use crate::numerics::Packed;
 use crate::uncertainty::PlanarKernel;
 
 /// Number of draws from which the level of a density is estimated; the standard error of the level
@@ -23,6 +26,8 @@ use crate::uncertainty::PlanarKernel;
 const N_DRAWS: usize = 2000;
 /// Number of draws for the area of a region, which then has an error of some 2 %.
 const N_REGION_DRAWS: usize = 10_000;
+/// Positions whose densities one task computes.
+const N_PER_TASK: usize = 1000;
 /// Smallest variance relative to the larger one of a part, and smallest absolute variance, m².
 const LEAST_RATIO: f64 = 1e-9;
 const LEAST_VARIANCE_M2: f64 = 1e-8;
@@ -133,9 +138,9 @@ impl PlanarMixture {
     /// Densities at `n` positions drawn from the mixture with a fixed seed, in ascending order,
     /// 1/m².
     pub fn densities_of_draws(&self, n: usize) -> Vec<f64> {
-        let kernels = self.kernels();
-        let density = |point: &[f64; 2]| kernels.iter().map(|kernel| kernel.density(*point)).sum();
-        let mut densities: Vec<f64> = self.sample(n, 0).iter().map(density).collect();
+        let (kernels, points) = (self.kernels(), self.sample(n, 0));
+        let at = |points| pulp::Arch::new().dispatch(Densities { kernels: &kernels, points });
+        let mut densities: Vec<f64> = points.par_chunks(N_PER_TASK).flat_map_iter(at).collect();
         densities.sort_by(f64::total_cmp);
         densities
     }
@@ -157,10 +162,53 @@ impl PlanarMixture {
     }
 }
 
+/// Densities of a mixture at points, several of them side by side.
+struct Densities<'a> {
+    kernels: &'a [PlanarKernel],
+    points: &'a [[f64; 2]],
+}
+
+impl WithSimd for Densities<'_> {
+    type Output = Vec<f64>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
+        let mut densities = Vec::with_capacity(self.points.len());
+        for points in self.points.chunks(Packed::<S>::N) {
+            let point = Packed::columns(simd, points);
+            let mut sum = Packed::splat(simd, 0.0);
+            for kernel in self.kernels {
+                sum += kernel.density(point);
+            }
+            densities.extend_from_slice(&sum.to_array()[..points.len()]);
+        }
+        densities
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::uncertainty::PlanarGrid;
+
+    #[test]
+    fn densities_side_by_side_are_those_of_each_point() {
+        let mixture = mixture();
+        let normal = |part: &PlanarPart, [x, y]: [f64; 2]| {
+            let [xx, xy, yy] = part.covariance;
+            let (determinant, [dx, dy]) = (xx * yy - xy * xy, [x - part.mean[0], y - part.mean[1]]);
+            let square = (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / determinant;
+            part.weight * (-0.5 * square).exp() / (std::f64::consts::TAU * determinant.sqrt())
+        };
+        let at = |point: &[f64; 2]| mixture.parts().iter().map(|part| normal(part, *point)).sum();
+        let mut expected: Vec<f64> = mixture.sample(2345, 0).iter().map(at).collect();
+        expected.sort_by(f64::total_cmp);
+        let densities = mixture.densities_of_draws(2345);
+        assert_eq!(densities.len(), expected.len());
+        for (density, expected) in densities.iter().zip(&expected) {
+            assert!((density / expected - 1.0).abs() < 1e-11, "{density} {expected}");
+        }
+    }
 
     #[test]
     fn the_region_of_a_normal_distribution_is_an_ellipse() {

@@ -9,9 +9,25 @@ const LEAST_GROUP: usize = 8;
 /// Length with which a heading is compared with positions, m/rad: half of a car.
 const HEADING_ARM_M: f64 = 2.3;
 
+/// Variance of what is drawn next over that of `n` draws of two numbers, from which mean and covariance are
+/// estimated: that of Student's t with n − 2 degrees of freedom,
+///
+/// ```text
+/// (n + 1) (n − 1) / (n (n − 4))
+/// ```
+///
+/// Without it the regions of 50 % of some 240 draws hold 37 to 47 % of others, and those of 90 % 84 to 88 %.
+/// For fewer than 5 draws, where there is none, that of 5.
+///
+/// Source: A. Gelman et al., Bayesian Data Analysis, 3rd ed., section 3.6.
+pub fn predictive_factor(n: usize) -> f64 {
+    let n = n.max(5) as f64;
+    (n + 1.0) * (n - 1.0) / (n * (n - 4.0))
+}
+
 impl PlanarMixture {
-    /// The distribution of the position over draws of a pose: a normal distribution for each group of
-    /// [`pose_groups`].
+    /// The distribution of the position of a further draw: a normal distribution for each group of
+    /// [`pose_groups`], widened by [`predictive_factor`].
     ///
     /// - `poses`: X, Y, m, and heading, rad, of each draw.
     pub fn from_poses(poses: &[[f64; 3]]) -> Self {
@@ -22,7 +38,7 @@ impl PlanarMixture {
             let mean = [0, 1].map(|axis| points.iter().map(|p| p[axis]).sum::<f64>() / n);
             let product = |a: usize, b: usize| {
                 let sum: f64 = points.iter().map(|p| (p[a] - mean[a]) * (p[b] - mean[b])).sum();
-                sum / (n - 1.0).max(1.0)
+                predictive_factor(points.len()) * sum / (n - 1.0).max(1.0)
             };
             PlanarPart {
                 weight: n,
@@ -63,7 +79,37 @@ pub fn pose_groups(poses: &[[f64; 3]]) -> Vec<Vec<usize>> {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+    use rand_distr::StandardNormal;
+
     use super::*;
+    use crate::numerics::random_stream;
+
+    /// A bend, which no normal distribution is like.
+    fn poses(stream: u64, n: usize) -> Vec<[f64; 3]> {
+        let mut rng = random_stream(3, "poses", stream);
+        let mut normal = || rng.sample::<f64, _>(StandardNormal);
+        let pose = |_| {
+            let [a, b, c] = [(); 3].map(|()| normal());
+            [5.0 * a, 0.4 * b - 0.4 * a * a, 0.3 * a + 0.1 * c]
+        };
+        (0..n).map(pose).collect()
+    }
+
+    #[test]
+    fn regions_hold_as_many_other_draws_as_they_say() {
+        let levels = (0..12).flat_map(|set| {
+            let distribution = PlanarMixture::from_poses(&poses(set, 240));
+            poses(100 + set, 100).into_iter().map(move |[x, y, _]| distribution.level_of([x, y]))
+        });
+        let levels: Vec<f64> = levels.collect();
+        let [half, most] = [0.5, 0.9].map(|level| {
+            let n_inside = levels.iter().filter(|reached| **reached <= level).count();
+            n_inside as f64 / levels.len() as f64
+        });
+        // Without the factor 0.41 and 0.85.
+        assert!((half - 0.5).abs() < 0.06 && (most - 0.9).abs() < 0.03, "{half} {most}");
+    }
 
     #[test]
     fn groups_hold_every_draw_once_and_those_that_end_alike() {

@@ -19,6 +19,7 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
+use crate::numerics::Lanes;
 use crate::uncertainty::{PlanarMixture, PlanarPart};
 
 /// Distance from the mean, in standard deviations, beyond which a part is neglected: e^(−8²/2) =
@@ -114,9 +115,10 @@ impl PlanarKernel {
     }
 
     /// Density at a position [x, y] in m, 1/m².
-    pub(super) fn density(&self, [x, y]: [f64; 2]) -> f64 {
+    #[inline(always)]
+    pub(super) fn density<T: Lanes>(&self, [x, y]: [T; 2]) -> T {
         let dy = y - self.mean[1];
-        self.at(x - self.mean[0] - self.slope * dy, dy)
+        self.exponent(x - self.mean[0] - dy * self.slope, dy).exp() * self.peak
     }
 
     /// Density at an offset from the mean, 1/m².
@@ -124,8 +126,14 @@ impl PlanarKernel {
     /// - `u`: distance of x from its conditional mean given y, m.
     /// - `dy`: distance of y from its mean, m.
     fn at(&self, u: f64, dy: f64) -> f64 {
+        // Far away it is 0, which that of `Lanes` is not.
+        self.peak * f64::exp(self.exponent(u, dy))
+    }
+
+    #[inline(always)]
+    fn exponent<T: Lanes>(&self, u: T, dy: T) -> T {
         let [a, d] = self.precision;
-        self.peak * (-0.5 * (a * u * u + d * dy * dy)).exp()
+        (u * a * u + dy * d * dy) * -0.5
     }
 }
 

@@ -7,6 +7,7 @@ use crate::figure::{Axis, CellMap, Figure, FigureElement, LineStyle, Role, Serie
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::{Phrase, Quantity, Unit, UnitSystem, significant, trimmed};
 use impactlab_sweep::atlas::{Atlas, Measure, Sensitivity, Slice, SliceCell};
+use impactlab_sweep::{PitInput, UNKNOWNS};
 
 /// Shares of the scale at which there are lines, and their styles.
 const LINES: [(f64, LineStyle); 3] =
@@ -190,11 +191,13 @@ fn cross(at: [f64; 2], edges: &[Vec<f64>; 2]) -> Vec<FigureElement> {
 
 /// The Sobol indices of an outcome as bars: the total index, and in it that of first order.
 ///
+/// - `label`: the outcome;
+/// - `atlas`: whose axes name the inputs;
 /// - `indices`: the greatest first.
-pub fn sensitivity_figure(label: &str, indices: &[Sensitivity]) -> Figure {
+pub fn sensitivity_figure(label: &str, atlas: &Atlas, indices: &[Sensitivity]) -> Figure {
     let x = Axis::new("Share of the variance", Quantity::Ratio.si_unit());
     // The first stands at the top.
-    let names = indices.iter().rev().map(|index| index.name.clone()).collect();
+    let names = indices.iter().rev().map(|index| input_label(atlas, &index.name)).collect();
     let y = Axis::named("", names);
     let mut elements = Vec::new();
     for (row, index) in indices.iter().rev().enumerate() {
@@ -213,6 +216,16 @@ pub fn sensitivity_figure(label: &str, indices: &[Sensitivity]) -> Figure {
         }
     }
     Figure::new(format!("What moves: {label}"), [x, y], elements).with_caveats(&caveats())
+}
+
+/// What an input is called: the label of its axis, where the atlas has one.
+fn input_label(atlas: &Atlas, input: &str) -> String {
+    let axis = atlas.axes.iter().find(|axis| axis.name == input);
+    let label = axis.map(|axis| axis.label.as_str()).or_else(|| match input {
+        UNKNOWNS => Some("What a draw leaves open"),
+        _ => PitInput::from_name(input).map(PitInput::label),
+    });
+    label.unwrap_or(input).to_owned()
 }
 
 /// Writes the cells of a map as CSV, one row a cell, in SI units; ends, mean and error of a cell are empty

@@ -34,12 +34,13 @@ pub use population::{UnseenCar, is_same_car};
 pub use predict::weighted_mean;
 pub(crate) use predict::with_resistance;
 pub use predict::{
-    Applicability, ComponentMotion, ComponentPath, CoupledDraw, LATENT_NAMES, LatentScales,
-    MotionDistribution, MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor,
-    RESISTANCE_SCATTER, ResponseModel, RestSearch, SettledMotion, StateDistribution, Widths,
+    Applicability, ComponentMotion, ComponentPath, CoupledDraw, LATENT_NAMES, LEAST_MOTIONS,
+    LatentScales, MotionDistribution, MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain,
+    Predictor, RESISTANCE_SCATTER, ResponseModel, RestSearch, SettledMotion, SettledMotions,
+    StateDistribution, Widths,
 };
 pub use train::{
     ImpactRecord, RESPONSE_CHECKPOINT, ResponseCase, ResponseCaseError, ResponseEpoch,
     ResponseRecord, ResponseStage, ResponseTrainSettings, ResponseTraining, ResponseTrainingSet,
-    UnseenCars, condition, fine_tune, learn_population, pretrain, train_fleet,
+    UnseenCars, condition, fine_tune, learn_population, pretrain, recalibrate, train_fleet,
 };

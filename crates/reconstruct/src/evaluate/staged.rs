@@ -145,7 +145,8 @@ impl TrueQuantities {
             | ReconstructedQuantity::StrikingSpeedBeforeSkid
             | ReconstructedQuantity::CarSpeed
             | ReconstructedQuantity::CarSideslip
-            | ReconstructedQuantity::CarYawRate => None,
+            | ReconstructedQuantity::CarYawRate
+            | ReconstructedQuantity::CarSpeedBeforeBraking => None,
         }
     }
 }

@@ -78,6 +78,30 @@ impl Items for Search {
             false => self.item(section, None, item),
         }
     }
+
+    fn many<T: Item>(&mut self, section: &'static Section, items: &mut Vec<T>) {
+        for (idx, item) in items.iter_mut().enumerate() {
+            self.item(section, Some(idx), item);
+        }
+        let again = |[first, second]: [usize; 2]| {
+            format!(
+                "{} {second} is the same as {first}: each would count as found by itself: remove one of them",
+                section.title
+            )
+        };
+        self.0 = self.0.take().or_else(|| twice(items).map(again));
+    }
+}
+
+/// The numbers, counted from 1, of the first item that stands there twice and would count twice.
+pub(super) fn twice<T: Item>(items: &[T]) -> Option<[usize; 2]> {
+    if T::COUNTS_ONCE {
+        return None;
+    }
+    items.iter().enumerate().find_map(|(idx, item)| {
+        let first = items.iter().take(idx).position(|earlier| earlier == item)?;
+        Some([first + 1, idx + 1])
+    })
 }
 
 struct Lacking(Option<Lack>);
@@ -174,6 +198,9 @@ mod tests {
         let text = missing(|evidence| evidence.positions.push(VideoPosition::default()));
         assert!(text.contains("position in a video 1 has not been entered"), "{text}");
         assert_eq!(missing(|evidence| evidence.positions.clear()), "");
+        let text = missing(|evidence| evidence.marks.push(evidence.marks[0].clone()));
+        assert!(text.contains("tire mark 2 is the same as 1"), "{text}");
+        assert_eq!(missing(|evidence| evidence.marks[1].points_m[1] = [9.0, 1.1]), "");
         let text = missing(|evidence| evidence.struck_car.cg_to_front_axle_m = Some(1.2));
         assert!(text.contains("CG to rear axle has not been entered"), "{text}");
     }

@@ -10,7 +10,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use crate::evidence::{
     After, CarEvidence, Damage, Edr, EvidenceKind, Item, Items, Mark, Measured, PriorRanges,
     RecordedSpeed, RestPose, Road, SkidBefore, Start, VideoPosition, Weighing, YesNoUnknown, after,
-    car, damage, mark, position, prior_ranges, recorder, rest, road, skid, speed, start, weighing,
+    car, damage, ends, mark, position, prior_ranges, recorder, rest, road, skid, speed, start,
+    weighing,
 };
 use crate::likelihood::{Compared, ComparedCar, Comparison, Discrepancy, PathResidual, Track};
 use crate::{CollisionMotion, StrikingMotion};
@@ -246,6 +247,13 @@ impl Evidence {
     /// Whether it is of a single car.
     pub fn is_single_car(&self) -> bool {
         self.kind == EvidenceKind::SingleCar
+    }
+
+    /// Whether a single car is said to have been braked before its start.
+    pub fn brakes_before_start(&self) -> bool {
+        self.is_single_car()
+            && ends(self.start.braked_before_s).is_some()
+            && self.after.driver_braked != YesNoUnknown::No
     }
 
     /// The title of the first item that is entered although evidence of this kind does not have it.

@@ -96,7 +96,7 @@ use std::path::Path;
 
 use impactlab_core::data::{TomlError, TomlFile, TomlTable};
 
-use crate::evidence::complete::lack_of;
+use crate::evidence::complete::{lack_of, twice};
 use crate::evidence::start;
 use crate::evidence::{
     Bounds, Choice, Evidence, EvidenceKind, Field, Fields, Item, Items, PointsMut, Section, Sigma,
@@ -234,10 +234,16 @@ impl Items for Reader<'_> {
 
     fn many<T: Item>(&mut self, section: &'static Section, items: &mut Vec<T>) {
         let found = self.step(|top| {
-            let items = top.tables(section.key)?.into_iter().map(read_item);
-            items.collect::<Result<Vec<_>, _>>().map(Some)
+            let found = top.tables(section.key)?.into_iter().map(read_item);
+            let found: Vec<T> = found.filter_map(Result::transpose).collect::<Result<_, _>>()?;
+            match twice(&found) {
+                None => Ok(Some(found)),
+                Some([first, second]) => Err(top.refuse_last(&format!(
+                    "each of them once: number {second} is number {first} again, and would count as found by itself"
+                ))),
+            }
         });
-        *items = found.into_iter().flatten().flatten().collect();
+        *items = found.unwrap_or_default();
     }
 }
 

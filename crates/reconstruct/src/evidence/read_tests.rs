@@ -154,6 +154,15 @@ fn an_error_names_file_line_key_and_what_is_expected() {
     }
 }
 
+#[test]
+fn a_mark_that_stands_twice_is_refused() {
+    let mark = "[[mark]]\nwheel = \"RR\"\nkind = \"locked\"\npoints_m = [[1.0, -0.7], [6, -0.8]]\n";
+    let error = read(&format!("{CASE}\n{mark}")).unwrap_err();
+    assert!(error.contains("number 2 is number 1 again"), "{error}");
+    let other = mark.replace("-0.8", "-0.9");
+    assert_eq!(read(&format!("{CASE}\n{other}")).unwrap().marks.len(), 2);
+}
+
 /// A standard deviation of the size of the program's is one that was stated.
 #[test]
 fn what_is_stated_differs_from_what_the_program_takes() {

@@ -12,6 +12,9 @@ use crate::likelihood::{Comparison, SINGLE_DEGREES_OF_FREEDOM, student};
 /// Share of a recorded change of velocity by which it may be wrong (49 CFR 563.8, UN R160).
 const DELTA_V_SHARE: f64 = 0.1;
 
+/// Half of the step in which it is recorded, m/s: 1 km/h (49 CFR 563.8).
+const DELTA_V_ROUNDING_M_S: f64 = 0.5 / 3.6;
+
 /// Standard deviation of a change of velocity that is small, m/s: the rounding of the record.
 const LEAST_DELTA_V_SIGMA_M_S: f64 = 0.03;
 
@@ -87,14 +90,14 @@ impl Item for Edr {
 }
 
 impl Edr {
-    /// What a recorder has kept, as evidence: a change of velocity within 10 %, the last speed before the crash
-    /// with the standard deviation of the program, and the end of the record of the change of velocity. A speed
-    /// that was recorded earlier than the crash has a larger standard deviation: what its last change, or at least
-    /// 2 m/s², makes of the time in between. Where the sensor is, no record says.
+    /// What a recorder has kept, as evidence: a change of velocity within 10 % and at least its rounding, the last
+    /// speed before the crash with the standard deviation of the program, and the end of the record of the change
+    /// of velocity. A speed that was recorded earlier than the crash has a larger standard deviation: what its last
+    /// change, or at least 2 m/s², makes of the time in between. Where the sensor is, no record says.
     pub fn from_record(record: &RecorderRecord) -> Self {
         let bounds = |recorded: RecordedDeltaV, sign: f64| {
             let value = sign * recorded.delta_v_m_s;
-            let half = DELTA_V_SHARE * value.abs();
+            let half = (DELTA_V_SHARE * value.abs()).max(DELTA_V_ROUNDING_M_S);
             [Some(value - half), Some(value + half)]
         };
         // What ends earlier than the other no longer changed there.
@@ -199,6 +202,9 @@ mod tests {
         assert_eq!(edr.delta_v_x(), Some([-11.0, -9.0]));
         // To the right is to the other side of y.
         assert_eq!(edr.delta_v_y(), Some([-2.2, -1.8]));
+        // A change of nothing is one of less than the rounding.
+        let none = RecorderRecord { delta_v_right: Some(recorded(0.0)), ..record.clone() };
+        assert_eq!(Edr::from_record(&none).delta_v_y(), Some([-0.5 / 3.6, 0.5 / 3.6]));
         let speed = edr.speed_before().unwrap();
         // Half a second before the crash, over which 2 m/s² may have been missed.
         assert!((speed.value, speed.sigma) == (20.0, 0.8_f64.hypot(1.0)), "{speed:?}");

@@ -38,6 +38,9 @@ pub struct RecordedSpeed {
 }
 
 impl Item for RecordedSpeed {
+    /// Speeds of one device have one error.
+    const COUNTS_ONCE: bool = true;
+
     fn fields(&mut self, visitor: &mut impl Fields) {
         let Self { time_s, speed_m_s } = self;
         visitor.number(&TIME, time_s);

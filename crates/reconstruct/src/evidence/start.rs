@@ -2,8 +2,8 @@
 //! measured by themselves, so that they are parts of the prior.
 
 use impactlab_core::ranges::{
-    ANGLE_SIGMA, BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_POSITION, EVIDENCE_SPEED,
-    POSITION_SIGMA, STEER_ANGLE, YAW_RATE,
+    ANGLE_SIGMA, BRAKE_SHARE, BRAKED_BEFORE, BRAKED_SHARE, CONTROL_TIME, EVIDENCE_HEADING,
+    EVIDENCE_POSITION, EVIDENCE_SPEED, POSITION_SIGMA, STEER_ANGLE, YAW_RATE,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,10 @@ const ROAD_WHEEL: Field =
 const BRAKE_START: Field = Field::new("brake_start", "driver brakes from", CONTROL_TIME);
 const BRAKE_SHARE_RANGE: Field =
     Field::new("brake_share", "braking over what the road holds", BRAKE_SHARE);
+const BEFORE: Field =
+    Field::new("braked_before", "driver braked before the start for", BRAKED_BEFORE);
+const BEFORE_SHARE: Field =
+    Field::new("braked_before_share", "with this share of the friction", BRAKED_SHARE);
 
 /// The start of the motion of a single car: the CG is at this place at time 0. Each value of a range is
 /// equally likely.
@@ -73,6 +77,11 @@ pub struct Start {
     pub brake_start_s: Option<Bounds>,
     /// Braking force over the largest that the road can hold.
     pub brake_share: Option<Bounds>,
+    /// How long the driver braked before the start, where there are no marks, s; `None` where nothing is said of
+    /// it. It tells the speed at which braking began.
+    pub braked_before_s: Option<Bounds>,
+    /// Braking force there over the largest that the road can hold.
+    pub braked_before_share: Option<Bounds>,
 }
 
 impl Item for Start {
@@ -88,6 +97,8 @@ impl Item for Start {
             road_wheel_rad,
             brake_start_s,
             brake_share,
+            braked_before_s,
+            braked_before_share,
         } = self;
         let (x, y) = (X.required_if(y_m.is_some()), Y.required_if(x_m.is_some()));
         visitor.place([&x, &y], &SIGMA, PlaceMut { x_m, y_m, sigma_m });
@@ -98,6 +109,8 @@ impl Item for Start {
         visitor.interval(&ROAD_WHEEL, road_wheel_rad);
         visitor.interval(&BRAKE_START, brake_start_s);
         visitor.interval(&BRAKE_SHARE_RANGE, brake_share);
+        visitor.interval(&BEFORE, braked_before_s);
+        visitor.interval(&BEFORE_SHARE, braked_before_share);
     }
 }
 

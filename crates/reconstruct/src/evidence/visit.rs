@@ -8,6 +8,9 @@ use crate::evidence::{Bounds, Choice, Field, Sigma, Stated, Word};
 
 /// An item of the evidence.
 pub trait Item: Clone + Default + PartialEq {
+    /// Whether items of this kind count as one where they say the same.
+    const COUNTS_ONCE: bool = false;
+
     /// Shows every field. The item is taken apart without `..`, so that none is left out.
     fn fields(&mut self, visitor: &mut impl Fields);
 

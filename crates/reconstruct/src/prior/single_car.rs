@@ -11,6 +11,7 @@
 //! | driver brakes | 3 of 4 | assumed |
 //! | … from | normal, −0.2 ± 0.7 s about a start by a mark | marks begin where somebody brakes; assumed |
 //! | … | uniform, −1.5 to 4 s about a stated start | a place says nothing of the driver; assumed |
+//! | … before the start, if said how long | uniform over it, 0.5 to 1 of the friction | no locked wheels; assumed |
 //! | … with an anti-lock system | 1 of 2 | nothing is known; without it, wheels lock where the road does not hold them |
 //! | wheels | those that somebody found locked or dragged are so from the start on | |
 //!
@@ -18,7 +19,7 @@
 //! inertia and cornering stiffness go with it, so that the motion hardly depends on it.
 
 use crate::cars::Cars;
-use crate::evidence::{Evidence, Measured, YesNoUnknown};
+use crate::evidence::{After, Evidence, Measured, Start, YesNoUnknown, ends};
 use crate::prior::wheels::ANY_DECISION;
 use crate::prior::{HIGHEST_SPEED_M_S, Prior, PriorSource, normal};
 use crate::single_car::StartPlace;
@@ -66,9 +67,21 @@ impl Prior {
         }
     }
 
+    /// The braking before the start, of which there are no marks.
+    fn open_before_start(&mut self, ranges: &Start) {
+        let Some([low, high]) = ends(ranges.braked_before_s) else { return };
+        self.add(Latent::BrakedBefore, PriorSource::Given, Distribution::Uniform { low, high });
+        let usual = (PriorSource::Assumed, Distribution::Uniform { low: 0.5, high: 1.0 });
+        self.open(Latent::BrakedBeforeShare, ranges.braked_before_share, usual);
+    }
+
     /// What driver and wheels do.
     fn add_wheels(&mut self, evidence: &Evidence) {
         let (after, ranges) = (&evidence.after, &evidence.start);
+        let brakes_before = evidence.brakes_before_start();
+        if brakes_before {
+            self.open_before_start(ranges);
+        }
         if after.is_all_locked() {
             // By the brakes, and not by a force that could turn a wheel.
             for (latent, value) in [
@@ -84,11 +97,15 @@ impl Prior {
             }
             return;
         }
+        // Who braked before the start brakes there.
+        let [latest_s, latest_by_mark_s] = if brakes_before { [0.0; 2] } else { [4.0, 6.0] };
         let start = match ranges.place_m() {
-            Some(_) => Distribution::Uniform { low: -1.5, high: 4.0 },
-            None => normal(-0.2, 0.7, -1.5, 6.0),
+            Some(_) => Distribution::Uniform { low: -1.5, high: latest_s },
+            None => normal(-0.2, 0.7, -1.5, latest_by_mark_s),
         };
-        self.add_brakes(after, [ranges.brake_start_s, ranges.brake_share], start);
+        let driver_braked = if brakes_before { YesNoUnknown::Yes } else { after.driver_braked };
+        let of_driver = After { driver_braked, ..after.clone() };
+        self.add_brakes(&of_driver, [ranges.brake_start_s, ranges.brake_share], start);
         match after.anti_lock {
             _ if after.driver_braked == YesNoUnknown::No => {}
             YesNoUnknown::Unknown => self.assume(Latent::AntiLockDecision, ANY_DECISION),

@@ -151,17 +151,16 @@ mod tests {
     use super::*;
     use impactlab_core::vehicle::VehicleState;
     use impactlab_networks::response::{ComponentMotion, StateDistribution};
-    use nalgebra::{SMatrix, SVector};
+    use nalgebra::SMatrix;
 
     /// A motion along X at 10 m/s, whose standard deviation grows from nearly zero to 0.5 m.
     fn motion() -> MotionDistribution {
         let state = |i: usize| StateDistribution {
             mean: VehicleState { x_m: i as f64 * STEP_S * 10.0, ..VehicleState::default() },
             covariance: SMatrix::identity() * (0.005 * i as f64).powi(2).max(1e-12),
-            by_share: SVector::zeros(),
         };
         let states = (0..=100).map(state).collect();
-        MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states, tail_ratio: 1.0 }])
+        MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states }])
     }
 
     fn sum(map: &DensityMap) -> f64 {

@@ -2,11 +2,11 @@
 //! impact force, or a given force, is propagated through the response network to a distribution of
 //! the motion.
 //!
-//! Each whole curve drawn from the distribution of the force gives its own distribution of motions,
-//! and the forecast is the mixture of these, equally weighted. The impulse is therefore uncertain
-//! as a whole, and not independently at each instant.
-
-use std::f64::consts::{FRAC_PI_2, PI};
+//! The forecast consists of whole motions, at least
+//! [`LEAST_MOTIONS`](impactlab_networks::response::LEAST_MOTIONS) of them. Curves drawn from the
+//! distribution of the force and drawn vehicles take turns in them, so that the impulse is uncertain as a
+//! whole, and not independently at each instant; each motion has latent factors and noise of the network of
+//! its own.
 
 use rayon::prelude::*;
 use schemars::JsonSchema;
@@ -16,30 +16,20 @@ use crate::analysis::motion_to_rest::{Settled, ToRest};
 use crate::analysis::{BothVehicles, MonteCarloError, RestOutcome};
 use impactlab_core::collision::Pose;
 use impactlab_core::collision::contact::PairError;
-use impactlab_core::data::{
-    ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
-};
+use impactlab_core::data::{ContactOutside, ForceAxes, ForceHistory, check_contact_within};
 use impactlab_core::numerics::random_stream;
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
-use impactlab_core::uncertainty::{ForceCurve, PlanarMixture};
+use impactlab_core::uncertainty::ForceCurve;
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
-    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, Pace,
-    RoadDraws, Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
-    rest_instant,
+    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, RoadDraws,
+    Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
 };
 use impactlab_networks::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::learning::LearningError;
 use impactlab_networks::response::{
-    Applicability, ComponentMotion, MotionDistribution, Predictor, ResponseModel, STEP_S,
-    weighted_mean,
+    Applicability, MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean,
 };
-
-/// Largest standard deviation of a component's heading with which its moments are propagated, rad.
-/// With 1 rad the mean of a velocity that turns with the vehicle has lost 40 % of its size.
-const MOST_HEADING_STD_RAD: f64 = 0.8;
-/// Number of draws for the intervals of the final position.
-const N_END_DRAWS: usize = 4000;
 
 /// Settings of a motion forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -140,8 +130,8 @@ pub struct MotionOutcome {
     pub p_quarter_turn: f64,
     /// Probability that the change of heading is at least 180° to either side at that time.
     pub p_half_turn: f64,
-    /// How much of this is chance, because forces and vehicles are drawn a limited number of times;
-    /// none where nothing is drawn.
+    /// How much of this is chance, because forces, vehicles and motions are drawn a limited number of
+    /// times; none of a single motion.
     pub monte_carlo: Option<MonteCarloError>,
 }
 
@@ -238,8 +228,7 @@ pub fn forecast_collision(
 
 /// Forecast of the motion after given forces, which are equally likely.
 ///
-/// Vehicles that are drawn take the forces in turn, so that each part of the mixture has a force and a
-/// vehicle of its own.
+/// The motions take forces and drawn vehicles in turn: motion i has force and vehicle i mod their number.
 ///
 /// # Errors
 /// [`MotionForecastError::OutOfRange`] for a duration outside [`FORECAST_DURATION`] or
@@ -258,7 +247,7 @@ pub fn forecast_forces(
     let is_known = response.known_car(&struck.vehicle).is_some();
     let draws = drawn_vehicles(struck, settings, forces.len(), !is_known);
     let predictors = predictors(response, struck, draws.as_ref())?;
-    let whole_motions = ToRest {
+    let question = ToRest {
         forces,
         predictors: &predictors,
         struck,
@@ -267,14 +256,8 @@ pub fn forecast_forces(
         lasts_to_limit: !settings.until_rest,
         seed: settings.seed,
     };
-    let motion = match settings.until_rest {
-        true => whole_motions.settle().map(ForecastMotion::from_settled),
-        false => propagated(forces, &predictors, struck, settings)
-            .filter(|motion| motion.is_followed_by_moments())
-            .or_else(|| whole_motions.settle()?.timed(forces, settings.seed)),
-    };
-    let ForecastMotion { distribution, paths, outcome, rest, applicabilities } =
-        motion.ok_or(MotionForecastError::Diverged)?;
+    let Settled { distribution, paths, outcome, rest, applicabilities } =
+        question.settle().ok_or(MotionForecastError::Diverged)?;
     let central = mean_of(&paths);
     if !central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())) {
         return Err(MotionForecastError::Diverged);
@@ -301,84 +284,6 @@ pub fn forecast_forces(
     })
 }
 
-/// A motion over all forces and vehicles.
-struct ForecastMotion {
-    distribution: MotionDistribution,
-    paths: Vec<Vec<VehicleState<f64>>>,
-    outcome: MotionOutcome,
-    rest: Option<RestOutcome>,
-    applicabilities: Vec<Applicability>,
-}
-
-impl ForecastMotion {
-    fn from_settled(settled: Settled) -> Self {
-        let Settled { distribution, paths, outcome, rest, applicabilities } = settled;
-        Self { distribution, paths, outcome, rest: Some(rest), applicabilities }
-    }
-
-    /// Whether mean and covariance follow the motion: no component is so uncertain about its heading
-    /// that a normal distribution of position and velocity in the axes of the vehicle means nothing.
-    fn is_followed_by_moments(&self) -> bool {
-        let at_end = |component: &ComponentMotion| component.states.last().copied();
-        let ends = self.distribution.components.iter().filter_map(at_end);
-        ends.map(|end| end.covariance[(2, 2)].sqrt()).all(|std_rad| std_rad < MOST_HEADING_STD_RAD)
-    }
-}
-
-impl Settled {
-    /// The same motion with its outcome at the end of the forecast, or where it has come to rest.
-    fn timed(self, forces: &[ForceHistory], seed: u64) -> Option<ForecastMotion> {
-        let outcome = MotionOutcome {
-            monte_carlo: self.outcome.monte_carlo,
-            ..timed_outcome(&self.distribution, &self.paths, forces, seed)?
-        };
-        Some(ForecastMotion { outcome, rest: None, ..ForecastMotion::from_settled(self) })
-    }
-}
-
-/// The outcome of a motion that is followed for a given time.
-fn timed_outcome(
-    distribution: &MotionDistribution,
-    paths: &[Vec<VehicleState<f64>>],
-    forces: &[ForceHistory],
-    seed: u64,
-) -> Option<MotionOutcome> {
-    let pace = Pace::mean_of(paths);
-    let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
-    let rest = rest_instant(&pace, STEP_S, force_end_s.fold(0.0, f64::max));
-    outcome(distribution, &mean_of(paths), &pace, rest, seed)
-}
-
-/// The motion over the duration, by propagation of the moments of the state; `None` where it is not
-/// finite.
-fn propagated(
-    forces: &[ForceHistory],
-    predictors: &[Predictor],
-    struck: &StruckVehicle,
-    settings: &MotionForecastSettings,
-) -> Option<ForecastMotion> {
-    let n_parts = forces.len().max(predictors.len());
-    let forecast = |part: usize| {
-        let (force, predictor) =
-            (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
-        let inputs = struck.inputs(force, settings.duration_s)?;
-        Some(Part {
-            motion: predictor.motion(&struck.initial, &inputs),
-            path: predictor.central_path(&struck.initial, &inputs),
-            applicability: predictor.applicability(&struck.initial, &inputs),
-        })
-    };
-    let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(forecast).collect();
-    let applicabilities = parts.iter().map(|part| part.applicability.clone()).collect();
-    let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
-        parts.into_iter().map(|part| (part.motion, part.path)).unzip();
-    let distribution = MotionDistribution::mixed(parts);
-    let mut outcome = timed_outcome(&distribution, &paths, forces, settings.seed)?;
-    let instant = (outcome.time_s / STEP_S).round() as usize;
-    outcome.monte_carlo = MonteCarloError::from_mixture(&distribution, instant, paths.len());
-    Some(ForecastMotion { distribution, paths, outcome, rest: None, applicabilities })
-}
-
 pub(super) fn pose(state: &VehicleState<f64>) -> Pose {
     Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
 }
@@ -392,13 +297,6 @@ pub(super) fn usual(mut all: Vec<&Applicability>) -> Applicability {
         Some(median) => Applicability { value: mean, ..(*median).clone() },
         None => Applicability::whole(),
     }
-}
-
-/// The forecast for one force and one vehicle.
-struct Part {
-    motion: MotionDistribution,
-    path: Vec<VehicleState<f64>>,
-    applicability: Applicability,
 }
 
 /// The draws of what is not known of vehicle and road, at least one for each force; `None` if that is
@@ -451,40 +349,101 @@ fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
     (0..n_instants).map(|i| weighted_mean(states(i))).collect()
 }
 
-/// Outcome of a motion; `None` for an empty motion.
-///
-/// - `rest`: the instant at which the vehicle comes to rest, if it does.
-fn outcome(
-    distribution: &MotionDistribution,
-    central: &[VehicleState<f64>],
-    pace: &[Pace],
-    rest: Option<usize>,
-    seed: u64,
-) -> Option<MotionOutcome> {
-    let at = rest.unwrap_or(central.len().checked_sub(1)?);
-    let (pace, start, end) = (pace.get(at)?, central.first()?, central.get(at)?);
-    let position: PlanarMixture = distribution.position(at);
-    let draws = position.sample(N_END_DRAWS, seed);
-    let along = |axis: usize| Estimate::from_draws(draws.iter().map(|point| point[axis]).collect());
-    let heading = distribution.heading(at)?;
-    Some(MotionOutcome {
-        time_s: at as f64 * STEP_S,
-        is_at_rest: rest.is_some(),
-        x_m: along(0),
-        y_m: along(1),
-        heading_change_rad: heading.estimate().mapped(|yaw_rad| yaw_rad - start.yaw_rad),
-        speed_m_s: pace.speed_m_s,
-        yaw_rate_rad_s: end.yaw_rate_rad_s,
-        region_90_m2: Some(position.region_m2(0.9)),
-        p_quarter_turn: heading.p_outside(start.yaw_rad - FRAC_PI_2, start.yaw_rad + FRAC_PI_2),
-        p_half_turn: heading.p_outside(start.yaw_rad - PI, start.yaw_rad + PI),
-        monte_carlo: None,
-    })
-}
-
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+    use std::ops::ControlFlow;
+
     use super::*;
+    use crate::{Event, ForceSource, Library, MotionSource, PredictMotionRequest, Question};
+    use impactlab_core::data::Sampling;
+    use impactlab_core::vehicle::Preset;
+    use impactlab_networks::response::{RESISTANCE_SCATTER, RestSearch, SettledMotion};
+    use impactlab_networks::shipped::ModelSource;
+
+    /// The forecast of a car that is pushed to the side at its rear, by forces of 16 to 24 kN.
+    fn pushed(n_forces: usize) -> MotionForecast {
+        let force = |i: usize| ForceHistory {
+            axes: ForceAxes::World,
+            sampling: Sampling::Instant,
+            time_s: vec![0.0, 0.05, 0.1],
+            fx_n: vec![0.0; 3],
+            fy_n: vec![0.0, 16e3 + 8e3 * (i as f64 + 0.5) / n_forces as f64, 0.0],
+            mz_n_m: None,
+        };
+        let struck = StruckVehicle {
+            vehicle: Preset::Reference.parameters(),
+            initial: VehicleState::driving_straight(15.0),
+            contact: ContactPoint { x_body_m: -1.5, y_body_m: -0.8, height_m: 0.5 },
+            controls: Controls::default(),
+            friction_zones: Vec::new(),
+        };
+        let settings = MotionForecastSettings {
+            n_curves: n_forces,
+            n_vehicles: 0,
+            duration_s: 2.0,
+            until_rest: false,
+            road: None,
+            seed: 1,
+        };
+        let forces: Vec<ForceHistory> = (0..n_forces).map(force).collect();
+        let model = ModelSource::Shipped.response_model().unwrap();
+        forecast_forces(&forces, &model, &struck, &settings).unwrap()
+    }
+
+    #[test]
+    fn several_motions_under_each_force_say_what_one_under_each_of_many_says() {
+        let [few, many] = [60, 240].map(pushed);
+        let end = few.distribution.n_instants() - 1;
+        assert_eq!(many.distribution.n_instants() - 1, end);
+        let planar = |forecast: &MotionForecast| forecast.distribution.mean(end).planar();
+        let off = planar(&few).into_iter().zip(planar(&many));
+        let covariances = [&few, &many].map(|forecast| forecast.distribution.covariance(end));
+        for (axis, (few, many)) in off.enumerate().take(3) {
+            let [of_few, std] = covariances.map(|covariance| covariance[(axis, axis)].sqrt());
+            // Four standard errors of the difference of 240 draws each: 0.37 and 0.26 of a deviation.
+            assert!((many - few).abs() < 0.37 * std, "{axis}: {few} {many}, deviation {std}");
+            assert!((of_few / std - 1.0).abs() < 0.3, "{axis}: deviations {of_few}, {std}");
+        }
+    }
+
+    #[test]
+    fn the_number_of_threads_changes_nothing() {
+        let [one, many] = [1, 3].map(|n_threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(n_threads).build().unwrap();
+            pool.install(|| pushed(7))
+        });
+        assert_eq!(one.distribution, many.distribution);
+        assert_eq!((one.outcome, one.paths), (many.outcome, many.paths));
+    }
+
+    /// A stable car far outside of what the network learned from. By the unscented transform of its state it
+    /// turned with a probability of 1e-8.
+    #[test]
+    fn a_car_that_spins_in_few_motions_does_so_as_often_as_in_many_more() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets/fea-road");
+        let source = MotionSource::Case { dataset: root, case: "d002".to_owned() };
+        let mut request = PredictMotionRequest::new(source, ForceSource::Given);
+        request.motion.vehicle_draws = Some(0);
+        let mut go_on = |_: Event<'_>| ControlFlow::Continue(());
+        let answer = request.answer(&Library::default(), &mut go_on).unwrap().complete().unwrap();
+        let (struck, force) = (answer.analysis.struck.unwrap(), &answer.forecast.forces[0]);
+        let inputs = struck.inputs(force, request.motion.duration_s).unwrap();
+        let predictor =
+            ModelSource::Shipped.response_model().unwrap().predictor(&struck.vehicle).unwrap();
+        let search = RestSearch { seed: 1, resistance_scatter: RESISTANCE_SCATTER };
+        let numbers: Vec<usize> = (0..2000).collect();
+        let many = predictor.settled(&struck.initial, &inputs, &numbers, &search).draws;
+        let has_turned = |motion: &&SettledMotion| {
+            let end_rad = motion.states.last().unwrap().yaw_rad;
+            (end_rad - struck.initial.yaw_rad).abs() >= FRAC_PI_2
+        };
+        let expected = many.iter().filter(has_turned).count() as f64 / 2000.0;
+        let share = answer.report.report.outcome.p_quarter_turn;
+        let error = (expected * (1.0 - expected) * (1.0 / 240.0 + 1.0 / 2000.0)).sqrt();
+        assert!(share > 0.0 && expected > 0.01, "{share} {expected}");
+        assert!((share - expected).abs() < 4.0 * error, "{share} {expected}");
+    }
 
     #[test]
     fn a_force_is_turned_into_world_axes() {

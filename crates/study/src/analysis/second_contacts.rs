@@ -13,11 +13,15 @@ use crate::analysis::{MotionForecast, StruckVehicle, VehicleTrack};
 use impactlab_core::collision::{Footprint, Pose, SecondContact};
 use impactlab_core::data::{Channel, ForceAxes, ForceHistory, TimeSeries, contact_interval};
 use impactlab_core::units::Estimate;
-use impactlab_core::vehicle::{ContactLoad, Integrator, Manoeuvre};
+use impactlab_core::vehicle::{
+    ContactLoad, Integrator, Manoeuvre, Motion, SimulationError, SimulationRun, simulate_batch,
+};
 use impactlab_networks::response::STEP_S;
 
 /// Time over which the vehicles are followed first, s: most that meet again do so by then.
 const FIRST_LOOK_S: f64 = 1.0;
+/// Draws that are followed side by side.
+const N_TOGETHER: usize = 32;
 
 /// How often and where two vehicles meet again.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,12 +56,19 @@ impl SecondContacts {
         striking: &VehicleTrack,
         is_own: bool,
     ) -> Option<Self> {
-        let follow = |(part, path): (usize, &Vec<Pose>)| {
+        let draw = |(part, path): (usize, &Vec<Pose>)| {
             let force = forecast.forces.get(part % forecast.forces.len().max(1))?;
-            follow(struck, path, striking, is_own, force)
+            Draw::new(struck, path, force)
+        };
+        let draws: Vec<Draw<'_>> = forecast.paths.par_iter().enumerate().filter_map(draw).collect();
+        let follow = |draws: &[Draw<'_>]| -> Vec<Option<SecondContact>> {
+            match is_own {
+                true => draws.iter().map(|draw| draw.meet(striking, &striking.motion)).collect(),
+                false => follow(draws, striking),
+            }
         };
         let followed: Vec<Option<SecondContact>> =
-            forecast.paths.par_iter().enumerate().filter_map(follow).collect();
+            draws.par_chunks(N_TOGETHER).flat_map_iter(follow).collect();
         let met: Vec<SecondContact> = followed.iter().flatten().copied().collect();
         if met.is_empty() {
             return None;
@@ -77,31 +88,68 @@ impl SecondContacts {
     }
 }
 
-/// Follows one draw; the outer `None` if that is not possible.
-fn follow(
+/// The struck vehicle in a draw.
+struct Draw<'a> {
     footprint: Footprint,
-    path: &[Pose],
-    striking: &VehicleTrack,
-    is_own: bool,
-    force: &ForceHistory,
-) -> Option<Option<SecondContact>> {
-    let struck = (footprint, &series(path)?);
-    let (_, contact_end_s) = contact_interval(force)?;
-    let meet = |motion: &TimeSeries| {
-        SecondContact::find(struck, (striking.footprint, motion), contact_end_s)
-    };
-    if is_own {
-        return Some(meet(&striking.motion));
+    motion: TimeSeries,
+    force: &'a ForceHistory,
+    contact_end_s: f64,
+    duration_s: f64,
+}
+
+impl<'a> Draw<'a> {
+    /// `None` if the draw cannot be followed.
+    fn new(footprint: Footprint, path: &[Pose], force: &'a ForceHistory) -> Option<Self> {
+        let (_, contact_end_s) = contact_interval(force)?;
+        let duration_s = path.len().saturating_sub(1) as f64 * STEP_S;
+        Some(Self { footprint, motion: series(path)?, force, contact_end_s, duration_s })
     }
-    let reaction = reaction(force)?;
-    let whole_s = path.len().saturating_sub(1) as f64 * STEP_S;
-    for duration_s in [whole_s.min(contact_end_s + FIRST_LOOK_S), whole_s] {
-        let motion = pushed(&striking.start, reaction.clone(), duration_s)?;
-        if let Some(second) = meet(&motion) {
-            return Some(Some(second));
+
+    fn meet(&self, striking: &VehicleTrack, motion: &TimeSeries) -> Option<SecondContact> {
+        let struck = (self.footprint, &self.motion);
+        SecondContact::find(struck, (striking.footprint, motion), self.contact_end_s)
+    }
+}
+
+/// Follows draws, in each of which the striking vehicle is simulated. Those for which it cannot be are
+/// left out.
+fn follow(draws: &[Draw<'_>], striking: &VehicleTrack) -> Vec<Option<SecondContact>> {
+    let mut waiting: Vec<(usize, &Draw<'_>)> = draws.iter().enumerate().collect();
+    let mut met: Vec<(usize, Option<SecondContact>)> = Vec::new();
+    for is_last in [false, true] {
+        let manoeuvre = |&(idx, draw): &(usize, &Draw<'_>)| {
+            let first_s = draw.contact_end_s + FIRST_LOOK_S;
+            let duration_s = if is_last { draw.duration_s } else { draw.duration_s.min(first_s) };
+            Some((idx, pushed(&striking.start, reaction(draw.force)?, duration_s)))
+        };
+        let manoeuvres: Vec<(usize, Manoeuvre)> = waiting.iter().filter_map(manoeuvre).collect();
+        waiting.clear();
+        for ((idx, _), motion) in manoeuvres.iter().zip(simulated(&striking.start, &manoeuvres)) {
+            let (Some(draw), Ok(motion)) = (draws.get(*idx), motion) else { continue };
+            match draw.meet(striking, &motion.series) {
+                None if !is_last => waiting.push((*idx, draw)),
+                second => met.push((*idx, second)),
+            }
         }
     }
-    Some(None)
+    met.sort_by_key(|(idx, _)| *idx);
+    met.into_iter().map(|(_, second)| second).collect()
+}
+
+/// The motions of a vehicle. Side by side they may depend on each other by rounding where its wheels are
+/// braked or driven; there they are simulated one by one.
+fn simulated(
+    start: &StruckVehicle,
+    manoeuvres: &[(usize, Manoeuvre)],
+) -> Vec<Result<Motion, SimulationError>> {
+    let runs: Vec<SimulationRun<'_>> = manoeuvres
+        .iter()
+        .map(|(_, manoeuvre)| SimulationRun { vehicle: &start.vehicle, manoeuvre })
+        .collect();
+    if start.controls.is_coasting() {
+        return simulate_batch(&runs);
+    }
+    runs.iter().map(|run| run.vehicle.simulate(run.manoeuvre, Integrator::Rk4)).collect()
 }
 
 /// The force on the striking vehicle; `None` if its axes turn with the struck one.
@@ -116,17 +164,16 @@ fn reaction(force: &ForceHistory) -> Option<ForceHistory> {
     })
 }
 
-/// The motion of the striking vehicle under a force that acts where the vehicles touch.
-fn pushed(start: &StruckVehicle, force: ForceHistory, duration_s: f64) -> Option<TimeSeries> {
-    let manoeuvre = Manoeuvre {
+/// What the striking vehicle does under a force that acts where the vehicles touch.
+fn pushed(start: &StruckVehicle, force: ForceHistory, duration_s: f64) -> Manoeuvre {
+    Manoeuvre {
         initial: start.initial,
         contact_load: Some(ContactLoad { force, contact: start.contact, recorded_moment: false }),
         controls: start.controls.clone(),
         duration_s,
         ends_at_rest: false,
         friction_zones: start.friction_zones.clone(),
-    };
-    Some(start.vehicle.simulate(&manoeuvre, Integrator::Rk4).ok()?.series)
+    }
 }
 
 fn series(path: &[Pose]) -> Option<TimeSeries> {

@@ -42,7 +42,7 @@ use crate::Request;
 pub use error::CaseError;
 pub use on_disk::CaseOnDisk;
 pub use package::{PackedFile, file_stem, pack, unpack};
-pub use paths::begin_paths_at;
+pub use paths::{begin_paths_at, end_paths_at, replace_strings};
 pub use reach::Reach;
 pub use run::{AnswerListener, AnsweredQuestion, CaseReport, VariantReport};
 pub use store::CASE_ENDING;

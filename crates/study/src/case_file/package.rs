@@ -190,7 +190,11 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
     // What is wrong with it is told of the place that it would have.
     let text = read_utf8(&staging.path().join(&case), MAX_RESULTS_BYTES)?;
     CaseFile::parse(&text, &absolute.join(&case))?;
-    fs::rename(staging.path(), &absolute).map_err(io(folder))?;
+    fs::rename(staging.path(), &absolute).map_err(|source| match absolute.exists() {
+        // Another process has made it by now.
+        true => CaseError::FolderExists { path: folder.to_owned() },
+        false => io(folder)(source),
+    })?;
     // Its place is taken by the folder.
     let _ = staging.keep();
     drop(lock);

@@ -1,5 +1,6 @@
 //! Paths in a case: absolute in memory, relative to the case's folder in its file.
 
+use std::collections::HashSet;
 use std::path::{Component, Path, PathBuf};
 
 use serde_json::Value;
@@ -10,7 +11,7 @@ const RELATIVE: [&str; 2] = ["./", "../"];
 /// Replaces strings in a value, at any depth; keys stay.
 ///
 /// - `change`: the new string; `None` keeps the old one.
-pub(super) fn replace_strings(value: &mut Value, change: &impl Fn(&str) -> Option<String>) {
+pub fn replace_strings(value: &mut Value, change: &impl Fn(&str) -> Option<String>) {
     match value {
         Value::String(text) => {
             if let Some(new) = change(text) {
@@ -30,6 +31,16 @@ pub fn begin_paths_at(value: &mut Value, folder: &Path) {
     replace_strings(value, &|text| Some(absolute(text, folder)?.to_str()?.to_owned()));
 }
 
+/// The opposite of [`begin_paths_at`] for the strings of a value that are one of `paths`; one that would
+/// not come back as it is stays.
+pub fn end_paths_at(value: &mut Value, paths: &HashSet<&Path>, folder: &Path) {
+    replace_strings(value, &|text| {
+        let ended = relative(paths.get(Path::new(text))?, folder)?;
+        let comes_back = absolute(&ended, folder)?.to_str() == Some(text);
+        comes_back.then_some(ended)
+    });
+}
+
 /// Every string in a value that is an absolute path.
 pub(super) fn absolute_paths(value: &Value) -> Vec<PathBuf> {
     match value {
@@ -43,7 +54,7 @@ pub(super) fn absolute_paths(value: &Value) -> Vec<PathBuf> {
 /// A path as the file of a case in `folder` says it, with `/` between its parts; `None` where it is on
 /// another drive.
 pub(super) fn relative(path: &Path, folder: &Path) -> Option<String> {
-    let relative = pathdiff::diff_paths(path, folder)?;
+    let relative = pathdiff::diff_paths(path, without_dots(folder))?;
     if relative.is_absolute() {
         return None;
     }
@@ -61,17 +72,22 @@ pub(super) fn absolute(text: &str, folder: &Path) -> Option<PathBuf> {
     if !RELATIVE.iter().any(|beginning| text.starts_with(beginning)) {
         return None;
     }
-    let mut path = folder.to_owned();
-    for part in Path::new(text).components() {
+    Some(without_dots(&folder.join(text)))
+}
+
+/// An absolute path without `.` and `..`.
+fn without_dots(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
         match part {
             Component::ParentDir => {
-                path.pop();
+                plain.pop();
             }
-            Component::Normal(name) => path.push(name),
-            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
+            Component::CurDir => {}
+            Component::Normal(_) | Component::RootDir | Component::Prefix(_) => plain.push(part),
         }
     }
-    Some(path)
+    plain
 }
 
 #[cfg(test)]
@@ -109,5 +125,16 @@ mod tests {
         begin_paths_at(&mut value, Path::new("/cases/here"));
         let expected = ["/cases/here/a", "/cases/b", "c", "/d", ""];
         assert_eq!(value, serde_json::json!({"./a": expected}));
+        // Only those that are known as paths, and come back from here as they are.
+        let known = ["/cases/here/a", "/cases/b", "/cases/x/../c", "c"];
+        let paths = known.map(Path::new).into_iter().collect();
+        for folder in ["/cases/here", "/cases/x/y/../../here"].map(Path::new) {
+            let mut value =
+                serde_json::json!(["/cases/here/a", "/cases/b", "/cases/x/../c", "c", "/d"]);
+            end_paths_at(&mut value, &paths, folder);
+            assert_eq!(value, serde_json::json!(["./a", "../b", "/cases/x/../c", "c", "/d"]));
+            begin_paths_at(&mut value, folder);
+            assert_eq!(value[1], "/cases/b");
+        }
     }
 }

@@ -8,7 +8,9 @@ use crate::{
     ImpliedContactReport, PredictForceReport, PredictMotionReport, ReplayedCaseReport,
     SimulateReport,
 };
-use impactlab_core::collision::{Footprint, ScenarioGeometry, TOUCH_TOLERANCE_M};
+use impactlab_core::collision::{
+    Footprint, Scenario, ScenarioGeometry, ScenarioVehicle, TOUCH_TOLERANCE_M,
+};
 use impactlab_core::data::{
     CONTACT_SHARE_OF_PEAK, Case, Flag, FlagKind, ForceAxes, ForceHistory, Loaded, Note, Severity,
     check_case, check_file, cut_at_s,
@@ -23,6 +25,9 @@ use impactlab_networks::response::{OutsideDomain, STEP_S};
 /// Largest standard error of the end of an interval by the number of draws, as a share of the width.
 const MOST_CHANCE: f64 = 0.1;
 
+/// Speed against the heading from which a vehicle moves backwards, m/s; slower ones roll back or slip.
+const BACKWARDS_M_S: f64 = 0.5;
+
 /// Outlines that overlap by more than the tolerance within which they touch.
 pub(crate) fn overlap_caveat(geometry: &ScenarioGeometry) -> Option<Caveat> {
     let overlap_m = geometry.overlap_m.filter(|overlap_m| *overlap_m > TOUCH_TOLERANCE_M)?;
@@ -35,6 +40,36 @@ pub(crate) fn overlap_caveat(geometry: &ScenarioGeometry) -> Option<Caveat> {
         .with_value("overlap of the outlines [m]", overlap_m)
         .with_range([f64::NEG_INFINITY, TOUCH_TOLERANCE_M]);
     Some(caveat)
+}
+
+/// Vehicles that move backwards at the first contact, which a wrong sign or heading says more often than a driver
+/// does.
+pub(crate) fn backwards(scenario: &Scenario) -> Vec<Caveat> {
+    let vehicles = [
+        (&scenario.struck, "the struck vehicle", "das gestoßene Fahrzeug"),
+        (&scenario.striking, "the striking vehicle", "das stoßende Fahrzeug"),
+    ];
+    let caveat = |(vehicle, en, de): (&ScenarioVehicle, &'static str, &'static str)| {
+        let (sin, cos) = vehicle.heading_rad.sin_cos();
+        let ahead_m_s = vehicle.vx_world_m_s * cos + vehicle.vy_world_m_s * sin;
+        backwards_caveat(Phrase::new(en, de), ahead_m_s)
+    };
+    vehicles.into_iter().filter_map(caveat).collect()
+}
+
+/// That a vehicle begins by moving backwards.
+///
+/// - `ahead_m_s`: its velocity along its heading, m/s.
+pub(crate) fn backwards_caveat(which: Phrase, ahead_m_s: f64) -> Option<Caveat> {
+    let text = Phrase::new(
+        "at the start {0} moves backwards, at {1} against its heading; if it drove ahead, the sign of its speed or \
+         its heading is wrong",
+        "zu Beginn bewegt sich {0} rückwärts, mit {1} gegen seine Fahrtrichtung; fuhr es vorwärts, stimmt das \
+         Vorzeichen der Geschwindigkeit oder die Richtung nicht",
+    )
+    .with(PhraseValue::phrase(which))
+    .with(PhraseValue::significant(Quantity::Speed, ahead_m_s.abs()));
+    (ahead_m_s < -BACKWARDS_M_S).then(|| Caveat::new(CaveatKind::Note, text))
 }
 
 /// An impact that gives energy to the vehicles, as sliding friction as the paper prints it can.
@@ -404,6 +439,18 @@ pub(crate) fn learned_case_caveat(kind: CaveatKind) -> Caveat {
 mod tests {
     use super::*;
     use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+    use std::path::Path;
+
+    #[test]
+    fn a_vehicle_that_moves_against_its_heading_is_named() {
+        let mut scenario = Scenario::preset_or_file(Path::new("pit-right-rear")).unwrap();
+        assert!(backwards(&scenario).is_empty());
+        scenario.struck.vx_world_m_s *= -1.0;
+        scenario.struck.vy_world_m_s *= -1.0;
+        let found = backwards(&scenario);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].text.starts_with("at the start the struck vehicle moves backwards"));
+    }
 
     #[test]
     fn restrictions_are_told_in_the_units_and_the_language_of_the_reader() {

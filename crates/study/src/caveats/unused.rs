@@ -79,7 +79,7 @@ pub(crate) fn network_of_fixed(scenario: &Scenario) -> Option<Caveat> {
     ))
 }
 
-/// Lanes and kerbs, where the draws of a forecast are not whole motions.
+/// Lanes and kerbs, where a forecast follows one vehicle by itself.
 pub(crate) fn lanes_by_network(site: &Site) -> Option<Caveat> {
     let has_places = !site.lanes.is_empty() || !site.kerbs.is_empty();
     has_places.then(|| {

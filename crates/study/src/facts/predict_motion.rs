@@ -2,6 +2,7 @@
 
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
+use impactlab_networks::response::LEAST_MOTIONS;
 
 use crate::analysis::{
     ContactsOutcome, MonteCarloError, MotionOutcome, PlaceChance, RestOutcome, Rival, RivalForce,
@@ -162,10 +163,11 @@ impl PredictMotionReport {
     }
 
     /// A probability over the forces and vehicles that were drawn. Draws under one force and of one
-    /// vehicle are not independent and count once.
+    /// vehicle are not independent and count once, unless there is but one.
     pub(super) fn chance(&self, chance: f64) -> Value {
         let n = match (self.n_forces.max(self.n_vehicles), &self.rest) {
-            (1, None) => return Value::Chance(chance, None),
+            (1, None) if self.striking.is_some() => return Value::Chance(chance, None),
+            (1, None) => LEAST_MOTIONS,
             (1, Some(rest)) => rest.n_draws,
             (n, _) => n,
         };

@@ -23,6 +23,7 @@ const SEED: u64 = 0;
 
 /// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct ImpactRequest {
     /// The two vehicles and where they meet.
     pub scenario: ScenarioChoice,
@@ -208,6 +209,7 @@ impl Question for ImpactRequest {
         let caveats: Caveats = assumed::first_touch(&geometry)
             .into_iter()
             .chain(assumed::contact_default(&scenario, &impact))
+            .chain(restrictions::backwards(&scenario))
             .chain(restrictions::overlap_caveat(&geometry))
             .chain(restrictions::energy_gain_caveat(solution.dissipated_energy_j))
             .chain(beside)

@@ -11,6 +11,7 @@
 //! speed knots, a course clockwise from north. A sentence whose checksum is wrong or that says that there was no
 //! fix is left out and counted. Positions are those of the antenna.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::data::formats::{Converted, Said, chosen_part, number_text};
@@ -161,15 +162,22 @@ fn kind(line: &str) -> Option<&str> {
     name.get(2..5).filter(|_| name.len() == 5)
 }
 
+/// A row of a log with who sent it and when, s of the day.
+struct Fix {
+    talker: String,
+    time_s: f64,
+    row: String,
+}
+
 /// The track of a log of sentences, and what is in doubt.
 fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
     let lines = || text.lines().map(str::trim);
-    let talker = lines().find(|line| kind(line) == Some("RMC"));
-    let wanted = if talker.is_some() { "RMC" } else { "GGA" };
-    let talker = talker.or_else(|| lines().find(|line| kind(line) == Some(wanted)));
-    let talker = talker.and_then(|line| line.get(..6)).unwrap_or_default();
-    let (mut rows, mut n_wrong, mut n_without) = (String::new(), 0, 0);
-    for line in lines().filter(|line| line.starts_with(talker)) {
+    let wanted = match lines().any(|line| kind(line) == Some("RMC")) {
+        true => "RMC",
+        false => "GGA",
+    };
+    let (mut fixes, mut n_wrong, mut n_without) = (Vec::new(), 0, 0);
+    for line in lines().filter(|line| kind(line) == Some(wanted)) {
         let Some(sentence) = checked(line) else {
             n_wrong += 1;
             continue;
@@ -179,8 +187,11 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
             "RMC" => rmc(&fields),
             _ => gga(&fields),
         };
-        match row {
-            Some(row) => rows.push_str(&row),
+        let time_s = fields.get(1).and_then(|text| seconds(text));
+        match row.zip(time_s) {
+            Some((row, time_s)) => {
+                fixes.push(Fix { talker: line.chars().skip(1).take(2).collect(), time_s, row });
+            }
             None => n_without += 1,
         }
     }
@@ -191,12 +202,60 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
     if n_without > 0 {
         doubts.push(format!("{n_without} sentences without a position are left out"));
     }
+    let (fixes, of_talkers) = of_one_clock(fixes, wanted);
+    doubts.extend(of_talkers);
     let header = match wanted {
         "RMC" => RMC_HEADER,
         _ => "time [s]\tlatitude [deg]\tlongitude [deg]",
     };
+    let rows: String = fixes.into_iter().map(|fix| fix.row).collect();
     let track = Track { name: wanted.to_owned(), header, rows };
     (if track.rows.is_empty() { Vec::new() } else { vec![track] }, doubts)
+}
+
+/// The fixes of the talker that comes first, with those of others at instants that it leaves out; without these
+/// where the time would go back, as that of two receivers does.
+fn of_one_clock(fixes: Vec<Fix>, kind: &str) -> (Vec<Fix>, Option<String>) {
+    let first = fixes.first().map(|fix| fix.talker.clone()).unwrap_or_default();
+    let others: BTreeSet<String> = fixes
+        .iter()
+        .filter(|fix| fix.talker != first)
+        .map(|fix| format!("{}{kind}", fix.talker))
+        .collect();
+    if others.is_empty() {
+        return (fixes, None);
+    }
+    let others: Vec<String> = others.into_iter().collect();
+    let others = others.join(", ");
+    // Instants of the day, to a millisecond.
+    let instant = |fix: &Fix| (fix.time_s * 1e3).round() as u64;
+    let mut taken: BTreeSet<u64> =
+        fixes.iter().filter(|fix| fix.talker == first).map(instant).collect();
+    let n_own = taken.len();
+    let is_kept: Vec<bool> =
+        fixes.iter().map(|fix| fix.talker == first || taken.insert(instant(fix))).collect();
+    let kept = || fixes.iter().zip(&is_kept).filter(|(_, is_kept)| **is_kept).map(|(fix, _)| fix);
+    let n_back = |times: Vec<u64>| times.windows(2).filter(|pair| pair[1] < pair[0]).count();
+    let own = || fixes.iter().filter(|fix| fix.talker == first);
+    let goes_back = n_back(kept().map(instant).collect()) > n_back(own().map(instant).collect());
+    let n_added = taken.len() - n_own;
+    let n_others = fixes.len() - own().count();
+    let said = match (n_added, goes_back) {
+        (0, _) => format!(
+            "{first}{kind} is read; {n_others} sentences {others} give the same instants and are left out"
+        ),
+        (_, true) => format!(
+            "{first}{kind} is read; {n_others} sentences {others} are left out, as their times do not follow on: are \
+             they of another receiver?"
+        ),
+        (_, false) => format!(
+            "{first}{kind} is read, and {others} at {n_added} instants that it leaves out; if they are of another \
+             receiver, keep one of them"
+        ),
+    };
+    let fixes = fixes.into_iter().zip(is_kept);
+    let fixes = fixes.filter(|(fix, is_kept)| *is_kept && (!goes_back || fix.talker == first));
+    (fixes.map(|(fix, _)| fix).collect(), Some(said))
 }
 
 /// What stands between the sign and the checksum, if it is right or not given.
@@ -224,6 +283,13 @@ fn gga(fields: &[&str]) -> Option<String> {
     let [_, time, lat, ns, lon, ew, quality, ..] = fields else { return None };
     let [time, lat, lon] = [clock(time)?, degrees(lat, ns, 2)?, degrees(lon, ew, 3)?];
     (*quality != "0" && !quality.is_empty()).then(|| format!("{time}\t{lat}\t{lon}\n"))
+}
+
+/// Seconds of the day of `hhmmss.ss`.
+fn seconds(text: &str) -> Option<f64> {
+    let parts = [text.get(..2)?, text.get(2..4)?, text.get(4..)?];
+    let [hours, minutes, seconds] = parts.map(|part| part.parse::<f64>().ok());
+    Some(3600.0 * hours? + 60.0 * minutes? + seconds?)
 }
 
 /// `hh:mm:ss.ss` of `hhmmss.ss`.
@@ -317,5 +383,32 @@ mod tests {
         ] {
             assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
         }
+    }
+
+    /// A receiver names its satellites by turns, another one says each instant twice.
+    #[test]
+    fn sentences_of_several_talkers_are_read_once_and_said() {
+        let rmc = |talker: &str, second: u32| {
+            let lon = 60.0 - 0.005 * f64::from(second);
+            sentence(&format!(
+                "{talker}RMC,10000{second}.00,A,5200.0000,N,000{lon:.4},W,10.0,090.0,251126,,"
+            ))
+        };
+        let track = |talkers: &[(&str, u32)]| {
+            let text: String =
+                talkers.iter().map(|(talker, second)| rmc(talker, *second)).collect();
+            let loaded = read("a.nmea", &text).unwrap();
+            let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+            (loaded.series.n_samples(), notes.join("\n"))
+        };
+        let (n, notes) = track(&[("GN", 1), ("GP", 2), ("GN", 3), ("GP", 4)]);
+        assert!(n == 4 && notes.contains("GPRMC at 2 instants"), "{n}: {notes}");
+        let (n, notes) = track(&[("GP", 1), ("GN", 1), ("GP", 2), ("GN", 2)]);
+        assert!(n == 2 && notes.contains("2 sentences GNRMC give the same"), "{n}: {notes}");
+        // The other receiver is late.
+        let (n, notes) = track(&[("GN", 3), ("GP", 2), ("GN", 5), ("GP", 4)]);
+        assert!(n == 2 && notes.contains("another receiver"), "{n}: {notes}");
+        let (n, notes) = track(&[("GP", 1), ("GP", 2)]);
+        assert!(n == 2 && !notes.contains("GPRMC"), "{n}: {notes}");
     }
 }

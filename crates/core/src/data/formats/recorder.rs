@@ -16,7 +16,7 @@ use crate::data::formats::cdr::{
     MAX_BYTES, Report, Section, column_name, is_before_crash, is_report,
 };
 use crate::data::formats::recorder_table::Table563;
-use crate::data::spelling::{letters_and_digits, trailing_unit};
+use crate::data::spelling::{is_delta_v, letters_and_digits, trailing_unit};
 use crate::data::text::read_text;
 use crate::data::{DataError, ReadSettings, Table};
 use crate::ranges::SPEED;
@@ -31,6 +31,10 @@ const HEADER_LINES: usize = 5;
 
 /// Longest time over which a change of velocity is recorded, s.
 pub(super) const LONGEST_S: f64 = 2.0;
+
+/// By how much the largest change of velocity of a report may be beyond the end of its record.
+const LARGER_SHARE: f64 = 1.2;
+const LARGER_M_S: f64 = 0.5;
 
 /// What a recorder has kept of one event.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -142,7 +146,7 @@ impl RecorderRecord {
     pub fn is_record(path: &Path) -> bool {
         let Ok(text) = read_text(path, MAX_BYTES as u64) else { return false };
         let mut first = text.text.lines().take(HEADER_LINES).map(letters_and_digits);
-        is_report(&text.text) || first.any(|line| line.contains("deltav"))
+        is_report(&text.text) || first.any(|line| is_delta_v(&line))
     }
 
     fn is_empty(&self) -> bool {
@@ -268,8 +272,20 @@ impl RecorderRecord {
                 let unit = trailing_unit(&column_name(name), Quantity::Time).ok().flatten()?;
                 Some(unit.to_si(value)).filter(|at_s| (0.0..LONGEST_S).contains(at_s))
             });
-            if slot.is_none() && SPEED.contains(delta_v_m_s) {
-                *slot = Some(RecordedDeltaV { delta_v_m_s, ends_s, is_cut: false });
+            match *slot {
+                None if SPEED.contains(delta_v_m_s) => {
+                    *slot = Some(RecordedDeltaV { delta_v_m_s, ends_s, is_cut: false });
+                }
+                Some(of)
+                    if delta_v_m_s.abs() > LARGER_SHARE * of.delta_v_m_s.abs() + LARGER_M_S =>
+                {
+                    self.doubts.push(format!(
+                        "the largest change of velocity is {delta_v_m_s:.2} m/s by the report ({}) and {:.2} m/s \
+                         at the end of its record: the record is cut off, or one of them is of another event",
+                        section.title, of.delta_v_m_s
+                    ));
+                }
+                None | Some(_) => {}
             }
         }
     }

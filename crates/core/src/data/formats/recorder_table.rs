@@ -5,12 +5,25 @@ use crate::data::formats::cdr::number;
 use crate::data::formats::recorder::{
     LONGEST_S, RecordedControls, RecordedDeltaV, RecordedSpeed, RecorderRecord, SETTLED_S,
 };
-use crate::data::spelling::{letters_and_digits, quantity_name, trailing_unit};
+use crate::data::spelling::{is_delta_v, letters_and_digits, quantity_name, trailing_unit};
 use crate::ranges::{ANGULAR_VELOCITY_SAMPLE, INSTANT, Range, SPEED, STEERING_WHEEL_ANGLE};
 use crate::units::Quantity;
 
 /// Change over this time from which the record is cut off, m/s.
 const CUT_M_S: f64 = 0.3;
+
+/// Rate at which a change of velocity grows in no crash of a car, m/s²: 100 g. That of barrier tests at 56 km/h is
+/// 30 to 60 g.
+const JUMP_M_S2: f64 = 981.0;
+
+/// Change of velocity from which a record that ends in zeros was filled up with them, m/s.
+const FILLED_UP_M_S: f64 = 2.0;
+
+/// Rate at which a car that drives on its tires changes its speed at most, m/s²: that of dry friction and some.
+const TIRES_M_S2: f64 = 12.0;
+
+/// Rounding of a recorded speed, m/s: 1 mph and its halves.
+const ROUNDING_M_S: f64 = 0.6;
 
 /// The columns of a table: names with units, numbers and texts.
 pub(super) struct Table563<'a> {
@@ -34,14 +47,17 @@ impl RecorderRecord {
             ("longitudinal", &mut self.delta_v_ahead, "ahead"),
             ("lateral", &mut self.delta_v_right, "to the right"),
         ] {
-            let is_delta_v = |key: &str| {
-                let has = |word: &str| key.contains(word);
-                (has("deltav") || has("velocitychange")) && has(words) && !has("maximum")
-            };
-            let Some(values) = table.column(Quantity::Speed, &mut doubts, is_delta_v) else {
+            let is_wanted =
+                |key: &str| is_delta_v(key) && key.contains(words) && !key.contains("maximum");
+            let Some(values) = table.column(Quantity::Speed, &mut doubts, is_wanted) else {
                 continue;
             };
-            let Some(recorded) = recorded_delta_v(&time_s, &values) else { continue };
+            let pairs = delta_v_pairs(&time_s, &values);
+            if let Some(why) = no_delta_v(&pairs) {
+                doubts.push(format!("the change of velocity {name} {why}; it is left out"));
+                continue;
+            }
+            let Some(recorded) = recorded_delta_v(&pairs) else { continue };
             if slot.is_some() {
                 doubts.push(format!(
                     "the change of velocity {name} is recorded twice for the event; the first one is read"
@@ -91,22 +107,7 @@ impl RecorderRecord {
             let is_lamp = ["lamp", "warning", "indicator"].iter().any(|word| key.contains(word));
             (key.starts_with("abs") || key.contains("antilock")) && !is_lamp
         };
-        let is_before =
-            |at_s: &Option<f64>| at_s.is_some_and(|at_s| at_s <= 0.0 && INSTANT.contains(at_s));
-        let has_speed = |row: &usize| speed.get(*row).is_some_and(Option::is_some);
-        let before: Vec<usize> =
-            (0..time_s.len()).filter(|row| time_s.get(*row).is_some_and(is_before)).collect();
-        let rows: Vec<usize> = before.iter().copied().filter(has_speed).collect();
-        if let (Some(first), Some(last)) = (rows.first(), rows.last()) {
-            let between = before.iter().filter(|row| (first..=last).contains(row));
-            let n_missing = between.count() - rows.len();
-            if n_missing > 0 {
-                doubts.push(format!(
-                    "rows before the crash that have no speed, between others that have one: {n_missing}; they \
-                     are left out"
-                ));
-            }
-        }
+        let rows = rows_before(time_s, &speed, doubts);
         let all = |values: &[Option<f64>], range: Range| {
             let of = |row: &usize| {
                 values.get(*row).copied().flatten().filter(|value| range.contains(*value))
@@ -124,8 +125,12 @@ impl RecorderRecord {
             doubts.push("the times before the crash do not increase; none is taken".to_owned());
             return;
         }
-        if let Some((at_s, speed_m_s)) = time_s.last().copied().zip(speed_m_s.last().copied()) {
-            self.speed_before = Some(RecordedSpeed { speed_m_s, at_s });
+        match beyond_tires(&time_s, &speed_m_s) {
+            Some(why) => doubts.push(why),
+            None => {
+                let last = time_s.last().copied().zip(speed_m_s.last().copied());
+                self.speed_before = last.map(|(at_s, speed_m_s)| RecordedSpeed { speed_m_s, at_s });
+            }
         }
         let of = |values: Option<Vec<Option<f64>>>, range, name: &str, doubts: &mut Vec<String>| {
             let values = values?;
@@ -154,6 +159,39 @@ impl RecorderRecord {
             is_anti_lock_active: anti_lock.unwrap_or_default(),
         };
     }
+}
+
+/// The rows before the crash that have a speed.
+fn rows_before(
+    time_s: &[Option<f64>],
+    speed: &[Option<f64>],
+    doubts: &mut Vec<String>,
+) -> Vec<usize> {
+    let at_s = |row: &usize| time_s.get(*row).copied().flatten();
+    let has_speed = |row: &usize| speed.get(*row).is_some_and(Option::is_some);
+    let is_before =
+        |row: &usize| at_s(row).is_some_and(|at_s| at_s <= 0.0 && INSTANT.contains(at_s));
+    let is_after = |row: &usize| at_s(row).is_some_and(|at_s| at_s > 0.0);
+    let n_after = (0..time_s.len()).filter(has_speed).filter(is_after).count();
+    if n_after > 0 {
+        doubts.push(format!(
+            "rows after 0 s that have a speed: {n_after}; they are not read, since 0 s is taken as the crash: if \
+             it is not, shift the times"
+        ));
+    }
+    let before: Vec<usize> = (0..time_s.len()).filter(is_before).collect();
+    let rows: Vec<usize> = before.iter().copied().filter(has_speed).collect();
+    if let (Some(first), Some(last)) = (rows.first(), rows.last()) {
+        let n_between = before.iter().filter(|row| (first..=last).contains(row)).count();
+        let n_missing = n_between - rows.len();
+        if n_missing > 0 {
+            doubts.push(format!(
+                "rows before the crash that have no speed, between others that have one: {n_missing}; they \
+                 are left out"
+            ));
+        }
+    }
+    rows
 }
 
 impl Table563<'_> {
@@ -197,14 +235,49 @@ impl Table563<'_> {
     }
 }
 
-/// The last change of velocity of a record after the recorder has woken up.
-fn recorded_delta_v(time_s: &[Option<f64>], values: &[Option<f64>]) -> Option<RecordedDeltaV> {
-    let pairs: Vec<(f64, f64)> = time_s
-        .iter()
-        .zip(values)
-        .filter_map(|(at_s, value)| at_s.zip(*value))
-        .filter(|(at_s, value)| (0.0..LONGEST_S).contains(at_s) && SPEED.contains(*value))
-        .collect();
+/// Times and changes of velocity of a record after the recorder has woken up.
+fn delta_v_pairs(time_s: &[Option<f64>], values: &[Option<f64>]) -> Vec<(f64, f64)> {
+    let pairs = time_s.iter().zip(values).filter_map(|(at_s, value)| at_s.zip(*value));
+    let is_in_range =
+        |(at_s, value): &(f64, f64)| (0.0..LONGEST_S).contains(at_s) && SPEED.contains(*value);
+    pairs.filter(is_in_range).collect()
+}
+
+/// Why a record of the change of velocity is that of no crash, in words: it was filled up with zeros, or with a
+/// number that stands for none.
+fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
+    let (at_s, largest) = *pairs.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let (end_s, last) = *pairs.last()?;
+    if last == 0.0 && largest.abs() > FILLED_UP_M_S {
+        return Some(format!(
+            "is {largest:.2} m/s at {at_s} s and zero at its end, {end_s} s: remove the rows that fill it up"
+        ));
+    }
+    let steps = pairs.iter().zip(pairs.iter().skip(1));
+    let mut jumps = steps.filter(|((t0, v0), (t1, v1))| {
+        (v1 - v0).abs() > ROUNDING_M_S + JUMP_M_S2 * (t1 - t0).abs()
+    });
+    let ((t0, v0), (t1, v1)) = jumps.next()?;
+    Some(format!(
+        "goes from {v0:.2} to {v1:.2} m/s between {t0} and {t1} s, as in no crash: remove the rows that have no value"
+    ))
+}
+
+/// Why the speed before a crash is not that of the car, in words: it changes by more than tires can make it.
+fn beyond_tires(time_s: &[f64], speed_m_s: &[f64]) -> Option<String> {
+    let rows: Vec<(f64, f64)> = time_s.iter().copied().zip(speed_m_s.iter().copied()).collect();
+    let steps = rows.iter().zip(rows.iter().skip(1));
+    let mut beyond = steps
+        .filter(|((t0, v0), (t1, v1))| (v1 - v0).abs() > ROUNDING_M_S + TIRES_M_S2 * (t1 - t0));
+    let ((t0, v0), (t1, v1)) = beyond.next()?;
+    Some(format!(
+        "the speed goes from {v0:.2} to {v1:.2} m/s between {t0} and {t1} s, which is more than tires can do: wheels \
+         that were locked or spun, or a number that stands for none; no speed before the crash is taken"
+    ))
+}
+
+/// The last change of velocity of a record.
+fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
     let (ends_s, delta_v_m_s) = *pairs.last()?;
     let earlier = pairs.iter().rev().find(|(at_s, _)| ends_s - at_s >= SETTLED_S - 1e-9);
     let is_cut = earlier.is_some_and(|(_, value)| (delta_v_m_s - value).abs() > CUT_M_S);

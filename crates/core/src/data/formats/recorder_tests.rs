@@ -85,6 +85,54 @@ fn a_pulse_that_is_cut_off_is_said_so() {
     assert!(record.doubts.iter().any(|doubt| doubt.contains("cut off")), "{record:?}");
 }
 
+/// Zeros after the end of a record, and the 127 km/h that stand for no value.
+#[test]
+fn rows_that_fill_up_a_record_are_no_change_of_velocity() {
+    for (fill, word) in [("0", "zero at its end"), ("127", "as in no crash")] {
+        let text = format!(
+            "Time [ms],Delta-V Longitudinal [km/h],Delta-V Lateral [km/h]\n\
+             0,0,0\n50,-16,1\n100,-30,2\n120,-32,2\n150,{fill},2\n200,{fill},2\n"
+        );
+        let record = read(&text, None).unwrap();
+        assert!(record.delta_v_ahead.is_none() && record.delta_v_right.is_some(), "{record:?}");
+        assert!(record.doubts.iter().any(|doubt| doubt.contains(word)), "{record:?}");
+    }
+    // A small change to the side does go back to zero.
+    let text = "Time [ms],Delta-V Lateral [km/h]\n0,0\n50,1\n100,0\n150,0\n";
+    assert_eq!(read(text, None).unwrap().delta_v_right.unwrap().delta_v_m_s, 0.0);
+}
+
+#[test]
+fn a_largest_change_of_velocity_beyond_the_record_is_said() {
+    let status = "SYSTEM STATUS AT EVENT (EVENT RECORD 1)\n\
+        \"Maximum Delta-V, Longitudinal (MPH [km/h])\",";
+    let is_said = |largest: &str| {
+        let record = read(&format!("{REPORT}{status}{largest}\n"), None).unwrap();
+        record.doubts.iter().any(|doubt| doubt.contains("the largest change of velocity"))
+    };
+    assert!(is_said("-35 [-56]"));
+    assert!(!is_said("-20 [-32]"));
+}
+
+/// Wheels that lock, and the 255 km/h that stand for no value: neither is the speed of the car.
+#[test]
+fn a_speed_that_tires_cannot_reach_is_not_taken() {
+    for wrong in ["0", "255"] {
+        let text = format!("Time [s],Speed [km/h]\n-1,64\n-0.5,{wrong}\n0,{wrong}\n");
+        let record = read(&text, None).unwrap();
+        assert_eq!((record.speed_before, record.before.time_s.len()), (None, 3));
+        assert!(record.doubts.iter().any(|doubt| doubt.contains("tires")), "{record:?}");
+    }
+    let braking = read("Time [s],Speed [km/h]\n-1,64\n-0.5,48\n0,31\n", None).unwrap();
+    assert!(braking.speed_before.is_some() && braking.doubts.is_empty(), "{braking:?}");
+}
+
+#[test]
+fn a_speed_after_the_time_of_the_crash_is_said() {
+    let record = read("Time [s],Speed [km/h]\n0,64\n0.5,58\n1,48\n", None).unwrap();
+    assert!(record.doubts.iter().any(|doubt| doubt.contains("after 0 s")), "{record:?}");
+}
+
 #[test]
 fn an_anti_lock_system_that_was_at_work_is_read() {
     let text = "Time [s],Speed [mph],Service Brake,ABS Activity\n\

@@ -29,8 +29,12 @@ library! {
     "generic-pickup",
     "generic-van",
     "chevrolet-tahoe-2004",
+    "chevrolet-tahoe-2022",
+    "chevrolet-tahoe-4wd-2022",
     "chevrolet-trailblazer-2004",
     "chrysler-pacifica-2004",
+    "dodge-charger-2022",
+    "ford-crown-victoria-2010",
     "ford-escape-2005",
     "ford-explorer-2004",
     "ford-explorer-2020",
@@ -118,7 +122,7 @@ mod tests {
         use crate::vehicle::sheet::SheetQuantity as Q;
         let real =
             LibraryVehicle::ALL.iter().filter(|vehicle| !vehicle.id().starts_with("generic"));
-        assert_eq!(real.clone().count(), 30);
+        assert_eq!(real.clone().count(), 34);
         for vehicle in real {
             let parameters = vehicle.parameters();
             let sheet: &DataSheet = parameters.sheet.as_ref().unwrap();

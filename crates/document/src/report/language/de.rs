@@ -316,10 +316,9 @@ pub(super) const WORDS: Words = Words {
     method_response: "Bewegungsnetz",
     method_response_text: "Jeder Schritt der Bewegung ist einer des 4DOF-Modells mit einer begrenzten zusätzlichen \
         Beschleunigung: Effekte bekannter Form mit gelernten Stärken und ein Rest aus einem \
-        neuronalen Netz. Die Unsicherheit wird für jede gezogene Kraft und jedes gezogene \
-        Fahrzeug mit der Unscented-Transformation längs der Bahn fortgepflanzt, und die \
-        Verteilungen werden gemischt. Außerhalb des Gelernten tritt das 4DOF-Modell mit seinen \
-        gemessenen Fehlern an seine Stelle.",
+        neuronalen Netz. Mindestens 240 ganze Bewegungen werden verfolgt, reihum mit den gezogenen \
+        Kräften und Fahrzeugen; was das Netz offenlässt, wird für jede gezogen. Außerhalb des \
+        Gelernten tritt das 4DOF-Modell mit seinen gemessenen Fehlern an seine Stelle.",
     limits_response: "Es hat aus simulierten Bewegungen von 57 Fahrzeugen von bis zu 12 s gelernt. Die \
         Auslaufstrecke wurde mit keiner Aufzeichnung verglichen.",
     method_reconstruction: "Rekonstruktion aus Spuren",
@@ -367,9 +366,9 @@ pub(super) const WORDS: Words = Words {
         sind zu schmal, die des Impulses zu breit.",
     table_force: "Fehler, Median (Mittel), %",
     table_force_coverage: "Anteil der wahren Werte in den Intervallen, %, ± Standardfehler",
-    validation_response: "Gegen simulierte Bewegungen von zwölf Fahrzeugen, jeweils mit einem Netz, das das \
-        Fahrzeug nicht kennt und aus weniger Fahrzeugen gelernt hat als das mitgelieferte: mittlerer \
-        Fehler über 4 s und der Endlage in m, Mittel (Median); Anteil der Lagen in den Bereichen.",
+    validation_response: "Gegen 180 simulierte Bewegungen von fünfzehn Fahrzeugen, die das Netz nicht kennt, jeweils \
+        nach Datenblatt: Fehler über 4 s und am Ende, bis 12 s; Anteile der Zeitpunkte und Enden in den Bereichen. \
+        Keine reale Bewegung wurde geprüft.",
     validation_contact: "95 simulierte Paare von Mehrkörperfahrzeugen, 84 davon PIT-Manöver; an die Hälfte ist das Gesetz \
         angepasst. Kein realer Unfall wurde geprüft.",
     table_contact: "Fehler über 4 s und am Ende, m, richtige Drehungen und Anteile der Zeitpunkte und Enden in den Flächen",

@@ -18,6 +18,22 @@ pub(super) const TERMS: &[(&str, &str)] = &[
         "Ford Explorer 2020 (base of the Police Interceptor Utility)",
         "Ford Explorer 2020 (Grundlage des Police Interceptor Utility)",
     ),
+    (
+        "Chevrolet Tahoe 2022, RWD (base of the Police Pursuit Vehicle)",
+        "Chevrolet Tahoe 2022, Hinterradantrieb (Grundlage des Police Pursuit Vehicle)",
+    ),
+    (
+        "Chevrolet Tahoe 2022, 4WD (base of the Police Pursuit Vehicle)",
+        "Chevrolet Tahoe 2022, Allradantrieb (Grundlage des Police Pursuit Vehicle)",
+    ),
+    (
+        "Dodge Charger 2022, V8, RWD (base of the Charger Pursuit police car)",
+        "Dodge Charger 2022, V8, Hinterradantrieb (Grundlage des Polizeifahrzeugs Charger Pursuit)",
+    ),
+    (
+        "Ford Crown Victoria 2010 (base of the Police Interceptor)",
+        "Ford Crown Victoria 2010 (Grundlage des Police Interceptor)",
+    ),
     // Rules of the vehicles of the data sets.
     ("as the reference car", "wie beim Referenzfahrzeug"),
     ("as the finite-element target", "wie beim gestoßenen Fahrzeug der Finite-Elemente-Rechnungen"),
@@ -187,6 +203,8 @@ pub(super) const TEMPLATES: &[(&str, &str)] = &[
     ),
     ("Transport Canada CVS ({})", "Transport Canada CVS ({})"),
     ("comma.ai opendbc ({})", "comma.ai opendbc ({})"),
+    ("EPA OMEGA ({})", "EPA OMEGA ({})"),
+    ("Wikipedia ({})", "Wikipedia ({})"),
     (
         "{}. Of the police car with its equipment no mass is published here: enter it as it was weighed",
         "{}. Für das Polizeifahrzeug mit seiner Ausrüstung ist hier keine Masse veröffentlicht: die \

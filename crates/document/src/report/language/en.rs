@@ -307,9 +307,9 @@ pub(super) const WORDS: Words = Words {
     method_response: "Response network",
     method_response_text: "Each step of the motion is one of the 4DOF model with a bounded acceleration added: \
         effects of known form with learned strengths, and a remainder by a neural network. \
-        Uncertainty is carried along the path by the unscented transform for each force and \
-        vehicle that was drawn, and the distributions are mixed. Outside of what it learned \
-        from, the 4DOF model with its measured errors takes its place.",
+        Whole motions are followed, at least 240, with the forces and vehicles that were drawn in turn; \
+        what the network leaves uncertain is drawn for each. Outside of what it learned from, the 4DOF \
+        model with its measured errors takes its place.",
     limits_response: "It learned from simulated motions of 57 cars of up to 12 s. The distance over which \
         a car rolls out has not been compared with a record.",
     method_reconstruction: "Reconstruction from evidence",
@@ -353,9 +353,9 @@ pub(super) const WORDS: Words = Words {
         narrow, those of the impulse too wide.",
     table_force: "Errors, median (mean), %",
     table_force_coverage: "Share of the true values inside the intervals, %, ± standard error",
-    validation_response: "Against simulated motions of twelve cars, each asked about by a network that has not \
-        seen the car and knows fewer cars than the shipped one: mean error over 4 s and of the rest \
-        position in m, mean (median); share of positions inside the regions.",
+    validation_response: "Against 180 simulated motions of fifteen cars that the network has not seen, each by its \
+        data sheet: error over 4 s and at the end, up to 12 s; shares of instants and ends inside the regions. No \
+        real motion was tried.",
     validation_contact: "95 simulated pairs of multibody cars, 84 of them PIT manoeuvres; the law was fitted to half of \
         them. No real collision was tried.",
     table_contact: "Error over 4 s and at the end, m, turns that were right, and shares of instants and ends inside the \

@@ -128,7 +128,7 @@ fn rest_error_m(model: &MotionModel, case: &ResponseCase) -> Result<Option<f64>,
     };
     let mut longer = case.clone();
     longer.inputs.extend(vec![*last; (REST_SEARCH_S / STEP_S) as usize]);
-    let states = model.predict(&longer)?.states;
+    let states = model.path(&longer)?;
     // A vehicle that slows down to nothing before it is struck is not at rest yet.
     let after_recording = states.iter().skip(case.states.len() / 2);
     let rest = after_recording.clone().find(is_at_rest).or(states.last());

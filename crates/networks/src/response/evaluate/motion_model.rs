@@ -72,6 +72,23 @@ impl MotionModel {
         }
     }
 
+    /// The central path of a case.
+    ///
+    /// # Errors
+    /// [`LearningError::Network`].
+    pub(crate) fn path(
+        &self,
+        case: &ResponseCase,
+    ) -> Result<Vec<VehicleState<f64>>, LearningError> {
+        match self {
+            Self::Plain(model) | Self::Network(model) => {
+                let initial = case.states.first().copied().unwrap_or_default();
+                Ok(model.predictor(&case.vehicle)?.central_path(&initial, &case.inputs))
+            }
+            Self::Untuned | Self::Tuned(_) => Ok(self.predict(case)?.states),
+        }
+    }
+
     /// Predicts the motion after the impact of a case.
     ///
     /// # Errors
@@ -87,7 +104,7 @@ impl MotionModel {
             Self::Tuned(tuning) => four_dof(&tuning.apply(&case.vehicle)),
             Self::Plain(model) | Self::Network(model) => {
                 let predictor = model.predictor(&case.vehicle)?;
-                let distribution = predictor.motion(&initial, &case.inputs);
+                let distribution = predictor.forecast(&initial, &case.inputs);
                 let states = |component: crate::response::ComponentPath| component.states;
                 PredictedMotion {
                     states: predictor.central_path(&initial, &case.inputs),

@@ -129,6 +129,14 @@ pub(crate) struct EffectAmounts<T> {
     body: [T; BodyEffect::COUNT],
 }
 
+impl<T: Lanes> EffectAmounts<T> {
+    /// No residual acceleration.
+    #[inline(always)]
+    pub fn none(&self) -> [T; N_RESIDUAL] {
+        [self.body[0].constant(0.0); N_RESIDUAL]
+    }
+}
+
 impl EffectModel {
     pub fn new(vehicle: &VehicleParameters) -> Self {
         let (geometry, tires) = (&vehicle.geometry, &vehicle.tires);
@@ -186,7 +194,7 @@ impl EffectModel {
         amounts: &EffectAmounts<T>,
         strengths: &[f64; N_EFFECTS],
     ) -> [T; N_RESIDUAL] {
-        let mut sum = [amounts.body[0].constant(0.0); N_RESIDUAL];
+        let mut sum = amounts.none();
         let (of_axles, of_body) = strengths.split_at(2 * N_PER_AXLE);
         let (of_axles, _) = of_axles.as_chunks();
         for ((axle, forces), strengths) in self.axles.iter().zip(&amounts.axles).zip(of_axles) {

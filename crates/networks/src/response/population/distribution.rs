@@ -137,6 +137,24 @@ impl StrengthPopulation {
         }
     }
 
+    /// The same distribution, with other widths for cars that are not known, and for those that are no
+    /// better known than that.
+    #[must_use]
+    pub(crate) fn with_new_widths(mut self, widths: Widths) -> Self {
+        let before = std::mem::replace(&mut self.widths, widths);
+        for car in self.cars.iter_mut().filter(|car| car.strengths.widths == before) {
+            car.strengths.widths = widths;
+        }
+        self
+    }
+
+    /// The same distribution, with no car known.
+    #[must_use]
+    pub(crate) fn without_cars(mut self) -> Self {
+        self.cars.clear();
+        self
+    }
+
     /// The strengths of a car that nobody has measured: those of the network give way to the mean over
     /// cars.
     pub(super) fn prior(&self, of_network: &[f64; N_EFFECTS]) -> CarStrengths {

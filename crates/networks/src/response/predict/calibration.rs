@@ -19,6 +19,7 @@ use argmin::solver::neldermead::NelderMead;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
+use crate::response::predict::CALIBRATION_MOTIONS;
 use crate::response::predict::latents::NAMED_PLACES;
 use crate::response::{LatentScales, N_NAMED_LATENTS, Predictor, ResponseCase, STEP_S};
 use impactlab_core::vehicle::VehicleState;
@@ -102,7 +103,11 @@ fn observe(unseen: &Unseen<'_>) -> Vec<Observation> {
         unseen.predictor.clone().with_latents(latents)
     };
     let certain = with([0.0; N_NAMED_LATENTS], 0.0).central_path(initial, &case.inputs);
-    let noise = with([0.0; N_NAMED_LATENTS], PROBE_NOISE).motion(initial, &case.inputs);
+    let noise = with([0.0; N_NAMED_LATENTS], PROBE_NOISE).forecast_of(
+        initial,
+        &case.inputs,
+        CALIBRATION_MOTIONS,
+    );
     // A latent that is one: strengths moved by a probe, all components alike.
     let moved: Vec<Vec<VehicleState<f64>>> = (0..N_NAMED_LATENTS)
         .map(|m| {
@@ -202,7 +207,7 @@ fn factor(unseen: &[Unseen<'_>], scales: LatentScales) -> f64 {
                 let case = unseen.case;
                 let Some(initial) = case.states.first() else { return (0, 0) };
                 let predictor = unseen.predictor.clone().with_latents(widened);
-                let motion = predictor.motion(initial, &case.inputs);
+                let motion = predictor.forecast_of(initial, &case.inputs, CALIBRATION_MOTIONS);
                 let inside = |at: &usize| {
                     let state = &case.states[*at];
                     motion.position(*at).level_of([state.x_m, state.y_m]) <= LEVEL

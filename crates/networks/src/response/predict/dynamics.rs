@@ -2,7 +2,7 @@
 //! at given latent factors.
 
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
-use crate::response::physics::effects::EffectModel;
+use crate::response::physics::effects::{EffectAmounts, EffectModel};
 use crate::response::physics::features::features_of;
 use crate::response::physics::step::StepModel;
 use crate::response::predict::latents::{Latents, N_LATENTS};
@@ -40,11 +40,11 @@ pub(crate) struct NetworkBatch {
 
 /// The terms of the correction at a state, before it is bounded.
 #[derive(Clone, Copy)]
-pub(super) struct CorrectionTerms<T = f64> {
+pub(super) struct CorrectionTerms {
     /// Effects and remainder of the component with every latent factor at zero.
-    pub value: [T; N_RESIDUAL],
+    pub value: [f64; N_RESIDUAL],
     /// Change of that by a latent factor of one.
-    pub by_latents: [[T; N_RESIDUAL]; N_LATENTS],
+    pub by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
 }
 
 impl NetworkBatch {
@@ -56,6 +56,11 @@ impl NetworkBatch {
 
     pub(super) fn push(&mut self, features: [f64; N_FEATURES]) {
         self.features.push(features);
+    }
+
+    /// Whether the network has a share in the step.
+    pub(super) fn has_share(&self) -> bool {
+        self.share > 0.0
     }
 }
 
@@ -83,20 +88,9 @@ impl<'a> Dynamics<'a> {
         (1.0 - (time_s - self.network.learned_s()) / FADE_S).clamp(0.0, 1.0)
     }
 
-    /// What the network sees, at the latest at the end of the motions that it has learned from.
-    #[inline(always)]
-    pub(super) fn features<T: Lanes>(
-        &self,
-        x: &VehicleState<T>,
-        now: &VehicleEvaluation<T>,
-        time_s: f64,
-    ) -> [T; N_FEATURES] {
-        features_of(self.vehicle, x, now, time_s.min(self.network.learned_s()))
-    }
-
-    /// Whether the step does not depend on each latent factor.
-    pub(super) fn ignored(&self) -> [bool; N_LATENTS] {
-        self.ignored
+    /// Time that the network sees: at the latest the end of the motions that it has learned from, s.
+    pub(super) fn seen_time_s(&self, time_s: f64) -> f64 {
+        time_s.min(self.network.learned_s())
     }
 
     /// One step at given latent factors.
@@ -139,8 +133,8 @@ impl<'a> Dynamics<'a> {
     ) -> [f64; N_RESIDUAL] {
         batch.begin(self.share_at(time_s));
         let mut terms = self.effects_at(component, (x, now), time_s);
-        if batch.share > 0.0 {
-            batch.push(self.features(x, now, time_s));
+        if batch.has_share() {
+            batch.push(features_of(self.vehicle, x, now, self.seen_time_s(time_s)));
             self.evaluate_network(batch);
             self.add_remainder(&mut terms, batch, [0, component]);
         }
@@ -148,27 +142,56 @@ impl<'a> Dynamics<'a> {
     }
 
     /// The known effects of a component.
-    #[inline(always)]
-    pub(super) fn effects_at<T: Lanes>(
+    fn effects_at(
         &self,
         component: usize,
-        (x, now): (&VehicleState<T>, &VehicleEvaluation<T>),
+        (x, now): (&VehicleState<f64>, &VehicleEvaluation<f64>),
         time_s: f64,
-    ) -> CorrectionTerms<T> {
-        let amounts = self.effects.amounts(x, now);
-        let none = [x.vx_body_m_s.constant(0.0); N_RESIDUAL];
-        let mut terms = CorrectionTerms { value: none, by_latents: [none; N_LATENTS] };
-        if let Some(known) = self.network.strengths(component) {
-            terms.value = self.effects.combined(&amounts, known);
+    ) -> CorrectionTerms {
+        let amounts = self.amounts(x, now);
+        let value = self.known_effects(component, &amounts);
+        CorrectionTerms { value, by_latents: self.effects_by_latents(&amounts, time_s) }
+    }
+
+    /// How large the known effects are.
+    #[inline(always)]
+    pub(super) fn amounts<T: Lanes>(
+        &self,
+        x: &VehicleState<T>,
+        now: &VehicleEvaluation<T>,
+    ) -> EffectAmounts<T> {
+        self.effects.amounts(x, now)
+    }
+
+    /// The known effects at the strengths of a component.
+    #[inline(always)]
+    pub(super) fn known_effects<T: Lanes>(
+        &self,
+        component: usize,
+        amounts: &EffectAmounts<T>,
+    ) -> [T; N_RESIDUAL] {
+        match self.network.strengths(component) {
+            Some(known) => self.effects.combined(amounts, known),
+            None => amounts.none(),
         }
+    }
+
+    /// Change of the known effects by a latent factor of one.
+    #[inline(always)]
+    pub(super) fn effects_by_latents<T: Lanes>(
+        &self,
+        amounts: &EffectAmounts<T>,
+        time_s: f64,
+    ) -> [[T; N_RESIDUAL]; N_LATENTS] {
+        let mut by_latents = [amounts.none(); N_LATENTS];
         let growth = self.latents.growth_at(time_s);
-        for (latent, by_latent) in terms.by_latents.iter_mut().enumerate() {
+        for (latent, by_latent) in by_latents.iter_mut().enumerate() {
             if !self.ignored[latent] {
                 let direction = self.latents.directions[latent].map(|change| change * growth);
-                *by_latent = self.effects.combined(&amounts, &direction);
+                *by_latent = self.effects.combined(amounts, &direction);
             }
         }
-        terms
+        by_latents
     }
 
     /// Evaluates the network at every state of the batch.
@@ -201,15 +224,19 @@ impl<'a> Dynamics<'a> {
         value
     }
 
-    /// Probability of a component at the first state of the batch, as it was when the network had last
-    /// been evaluated.
-    pub(crate) fn weight(&self, component: usize, batch: &NetworkBatch) -> f64 {
-        self.network.weight(&batch.work, [0, component])
+    /// Probability of a component at a state of the batch, as it was when the network had last been
+    /// evaluated.
+    ///
+    /// - `at`: indices of the state in the batch and of the component.
+    pub(crate) fn weight(&self, at: [usize; 2], batch: &NetworkBatch) -> f64 {
+        self.network.weight(&batch.work, at)
     }
 
-    /// Standard deviation of the noise of a step from the first state of the batch.
-    pub(crate) fn noise(&self, component: usize, batch: &NetworkBatch) -> [f64; N_RESIDUAL] {
-        let variance = self.network.variance(&batch.work, [0, component]);
+    /// Standard deviation of the noise of a step from a state of the batch.
+    ///
+    /// - `at`: indices of the state in the batch and of the component.
+    pub(crate) fn noise(&self, at: [usize; 2], batch: &NetworkBatch) -> [f64; N_RESIDUAL] {
+        let variance = self.network.variance(&batch.work, at);
         let std = variance.map(|variance| variance.min(LARGEST_VARIANCE).sqrt());
         std.map(|std| batch.share * self.latents.step_noise * std)
     }

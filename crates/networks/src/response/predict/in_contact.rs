@@ -83,7 +83,7 @@ impl CoupledDraw<'_> {
         let Self { dynamics, component, latents, noise, batch } = self;
         let mut residual = dynamics.correction(*component, latents, x, u, time_s, batch);
         if let Some((rng, width)) = noise {
-            let std = dynamics.noise(*component, batch);
+            let std = dynamics.noise([0, *component], batch);
             for (sum, std) in residual.iter_mut().zip(std) {
                 *sum += *width * std * normal(rng) / STEP_S;
             }

@@ -119,7 +119,7 @@ impl Widths {
 }
 
 /// The two widths about their geometric mean, the narrower first.
-pub(super) fn width_pair(tail_ratio: f64) -> [f64; 2] {
+fn width_pair(tail_ratio: f64) -> [f64; 2] {
     let root = tail_ratio.max(1.0).sqrt();
     [1.0 / root, root]
 }

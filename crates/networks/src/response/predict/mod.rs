@@ -11,15 +11,17 @@ mod model;
 
 mod dynamics;
 
-mod joint_state;
-
 mod side_by_side;
 
-mod propagate;
-#[cfg(test)]
-mod propagate_tests;
+mod abreast;
 
 pub(super) mod predictor;
+
+mod distribution;
+
+mod forecast;
+#[cfg(test)]
+mod test_motions;
 
 mod path_draws;
 
@@ -27,13 +29,15 @@ mod to_rest;
 
 mod in_contact;
 
+pub use distribution::{ComponentMotion, MotionDistribution, StateDistribution};
 pub use domain::{Applicability, MotionDomain, OutsideDomain};
+pub(crate) use forecast::CALIBRATION_MOTIONS;
+pub use forecast::LEAST_MOTIONS;
 pub use in_contact::CoupledDraw;
 pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS, Widths};
 pub(crate) use latents::{Latents, N_OF_COLLISION};
 pub use model::ResponseModel;
 pub use predictor::weighted_mean;
-pub use predictor::{ComponentPath, MotionDistribution, Predictor};
-pub use propagate::{ComponentMotion, StateDistribution};
+pub use predictor::{ComponentPath, Predictor};
 pub(crate) use to_rest::with_resistance;
-pub use to_rest::{RESISTANCE_SCATTER, RestSearch, SettledMotion};
+pub use to_rest::{RESISTANCE_SCATTER, RestSearch, SettledMotion, SettledMotions};

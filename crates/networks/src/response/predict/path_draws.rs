@@ -11,11 +11,10 @@
 //! How the error of one instant goes with that of another is not known from it: the draws take it as the
 //! same error that grows.
 
-use crate::response::MotionDistribution;
 use crate::response::predict::predictor::normal;
+use crate::response::{MotionDistribution, StateDistribution};
 use impactlab_core::collision::Pose;
 use impactlab_core::numerics::random_stream;
-use rand::RngExt;
 
 impl MotionDistribution {
     /// Draws whole paths. Components come in proportion to their weights.
@@ -29,26 +28,13 @@ impl MotionDistribution {
             let mut rng = random_stream(seed, "drawn paths", idx as u64);
             let component = super::predictor::drawn(&weights, (idx as f64 + 0.5) / n_draws as f64);
             let component = self.components.get(component)?;
-            let width = rng.random::<f64>();
             let z: [f64; 3] = std::array::from_fn(|_| normal(&mut rng));
             let pose = |instant: usize| {
-                let mut share = 0.0;
-                let parts: Vec<_> = component.at(instant).collect();
-                let sum: f64 = parts.iter().map(|part| part.weight).sum();
-                let part = parts.iter().find(|part| {
-                    share += part.weight / sum;
-                    width <= share
-                });
-                let part = part.or(parts.last())?;
-                let p = &part.covariance;
+                let StateDistribution { mean, covariance: p } = component.states.get(instant)?;
                 let root = root([p[(0, 0)], p[(1, 0)], p[(1, 1)], p[(2, 0)], p[(2, 1)], p[(2, 2)]]);
                 let off = |row: &[f64]| row.iter().zip(&z).map(|(l, z)| l * z).sum::<f64>();
                 let [x, y, yaw] = [&root[0..1], &root[1..3], &root[3..6]].map(off);
-                Some(Pose {
-                    x_m: part.mean[0] + x,
-                    y_m: part.mean[1] + y,
-                    yaw_rad: part.mean[2] + yaw,
-                })
+                Some(Pose { x_m: mean.x_m + x, y_m: mean.y_m + y, yaw_rad: mean.yaw_rad + yaw })
             };
             (0..self.n_instants()).map(pose).collect::<Option<Vec<Pose>>>()
         };
@@ -70,10 +56,10 @@ fn root([xx, yx, yy, zx, zy, zz]: [f64; 6]) -> [f64; 6] {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{SMatrix, SVector};
+    use nalgebra::SMatrix;
 
     use super::*;
-    use crate::response::{ComponentMotion, StateDistribution};
+    use crate::response::ComponentMotion;
     use impactlab_core::vehicle::VehicleState;
 
     #[test]
@@ -90,11 +76,10 @@ mod tests {
             covariance[(1, 2)] = -0.5 * sy * syaw;
             let mean =
                 VehicleState { x_m: 10.0 * t, y_m: t, yaw_rad: 0.3 * t, ..VehicleState::default() };
-            StateDistribution { mean, covariance, by_share: SVector::zeros() }
+            StateDistribution { mean, covariance }
         };
         let states = vec![state(0.0), state(1.0), state(2.0)];
-        let forecast =
-            MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states, tail_ratio: 1.0 }]);
+        let forecast = MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states }]);
         let draws = forecast.draws(4000, 7);
         assert_eq!((draws.len(), draws[0].len()), (4000, 3));
         let mean = |coordinate: &dyn Fn(&Pose) -> f64| {

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use nalgebra::{SMatrix, SVector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -11,26 +10,14 @@ use rayon::prelude::*;
 
 use crate::response::network::vehicle_network::VehicleNetwork;
 use crate::response::predict::Latents;
-use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
-use crate::response::predict::joint_state::N_JOINT;
-use crate::response::predict::propagate::PlanarState;
+use crate::response::predict::abreast::{FollowedMotion, MotionDraw, StepNoise};
+use crate::response::predict::dynamics::Dynamics;
 use crate::response::{
-    Applicability, CarStrengths, ComponentMotion, LatentScales, MotionDomain, N_EFFECTS, N_LATENTS,
-    N_RESIDUAL, STEP_S, StrengthPopulation,
+    Applicability, CarStrengths, LatentScales, MotionDomain, N_EFFECTS, N_LATENTS,
+    StrengthPopulation,
 };
-use impactlab_core::numerics::random_stream;
-use impactlab_core::uncertainty::{
-    NormalMixture, NormalPart, PlanarMixture, PlanarPart, Unscented,
-};
+use impactlab_core::numerics::{MAX_LANES, random_stream};
 use impactlab_core::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
-
-/// Points two standard deviations from the mean, as in the paper's four dimensions with α = 1, and so
-/// many dimensions as there are: κ = 4 − n. The centre then has no part in the covariance, which is
-/// positive whatever the step does.
-const POINTS: Unscented = Unscented { alpha: 1.0, beta: 2.0, kappa: 4.0 - N_JOINT as f64 };
-
-/// Smallest variance of a component of the state, as at the start, where every component is known.
-const LEAST_VARIANCE: f64 = 1e-12;
 
 /// A model for one vehicle.
 #[derive(Debug, Clone)]
@@ -38,7 +25,6 @@ pub struct Predictor {
     pub(super) vehicle: VehicleParameters,
     pub(super) network: VehicleNetwork,
     pub(super) latents: Latents,
-    unscented: Unscented,
     source: Option<Arc<PredictorSource>>,
 }
 
@@ -86,15 +72,8 @@ impl PredictorSource {
 pub struct ComponentPath {
     /// Mean probability of the component along the path.
     pub weight: f64,
-    /// States every [`STEP_S`].
+    /// States every [`STEP_S`](crate::response::STEP_S).
     pub states: Vec<VehicleState<f64>>,
-}
-
-/// The distribution of a motion: a mixture of normal distributions at every instant.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MotionDistribution {
-    /// The components; their weights sum to one.
-    pub components: Vec<ComponentMotion>,
 }
 
 impl Predictor {
@@ -103,7 +82,7 @@ impl Predictor {
         network: VehicleNetwork,
         latents: Latents,
     ) -> Self {
-        Self { vehicle, network, latents, unscented: POINTS, source: None }
+        Self { vehicle, network, latents, source: None }
     }
 
     /// A predictor whose learned part fades where a motion lies outside of what was learned from.
@@ -169,11 +148,14 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Vec<ComponentPath> {
-        let n = self.n_components();
         let fitted = self.fitted_to(initial, inputs);
-        fitted.paths_at(initial, inputs, |j| {
-            fitted.latents.component_shares(j, n).map(|share| share.mean)
-        })
+        fitted.paths_at(initial, inputs, |j| fitted.mean_latents(j))
+    }
+
+    /// Means of the latent factors of a component.
+    pub(super) fn mean_latents(&self, component: usize) -> [f64; N_LATENTS] {
+        let shares = self.latents.component_shares(component, self.n_components());
+        shares.map(|share| share.mean)
     }
 
     /// The path of each component at given latent factors.
@@ -183,14 +165,9 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
         latents: impl Fn(usize) -> [f64; N_LATENTS],
     ) -> Vec<ComponentPath> {
-        let (dynamics, mut batch) = (self.dynamics(), NetworkBatch::default());
-        let mut none = |std: &mut [f64; N_RESIDUAL]| *std = [0.0; N_RESIDUAL];
-        let component_path =
-            |j: usize| path(&dynamics, j, &latents(j), &mut none, initial, inputs, &mut batch);
-        let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(component_path).collect();
-        let sum: f64 = paths.iter().map(|path| path.weight).sum();
-        paths.iter_mut().for_each(|path| path.weight /= sum);
-        paths
+        let draw = |j| MotionDraw::certain(j, latents(j));
+        let draws = (0..self.n_components()).map(draw).collect();
+        weighted(self.dynamics().follow(draws, initial, inputs, |_, _, _| true))
     }
 
     /// Mean over the components of the paths on which one latent factor is one and the others are zero.
@@ -219,22 +196,7 @@ impl Predictor {
         mean_of(&paths, inputs.len())
     }
 
-    /// The distribution of the motion.
-    ///
-    /// - `inputs`: the input over each step.
-    pub fn motion(
-        &self,
-        initial: &VehicleState<f64>,
-        inputs: &[VehicleInput<f64>],
-    ) -> MotionDistribution {
-        let fitted = self.fitted_to(initial, inputs);
-        let dynamics = fitted.dynamics();
-        let component = |j| dynamics.motion(j, self.unscented, initial, inputs);
-        MotionDistribution::new((0..self.n_components()).map(component).collect())
-    }
-
-    /// Coherent draws: a component, latent factors drawn once, and the noise of each step. The
-    /// reference that [`Predictor::motion`] is compared with.
+    /// Coherent draws: a component, latent factors drawn once, and the noise of each step.
     ///
     /// - `n`: how many; `seed`: of the draws.
     pub fn sample(
@@ -249,21 +211,41 @@ impl Predictor {
         let weights: Vec<f64> =
             self.paths(initial, inputs).iter().map(|path| path.weight).collect();
         let draw = |idx: usize| {
-            let mut rng = random_stream(seed, "coherent motions", idx as u64);
-            let j = drawn(&weights, rng.random());
-            let shares = fitted.latents.component_shares(j, weights.len());
-            let width = fitted.latents.width(rng.random());
-            let latents: [f64; N_LATENTS] = std::array::from_fn(|m| {
-                width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
-            });
-            let mut noise = |std: &mut [f64; N_RESIDUAL]| {
-                std.iter_mut().for_each(|std| *std *= width * normal(&mut rng));
-            };
-            let mut batch = NetworkBatch::default();
-            path(&dynamics, j, &latents, &mut noise, initial, inputs, &mut batch).states
+            let rng = random_stream(seed, "coherent motions", idx as u64);
+            fitted.drawn_motion(&weights, rng)
         };
-        (0..n).into_par_iter().map(draw).collect()
+        let numbers: Vec<usize> = (0..n).collect();
+        let follow = |numbers: &[usize]| {
+            let draws = numbers.iter().copied().map(&draw).collect();
+            let followed = dynamics.follow(draws, initial, inputs, |_, _, _| true);
+            followed.into_iter().map(|motion| motion.states)
+        };
+        numbers.par_chunks(MAX_LANES).flat_map_iter(follow).collect()
     }
+
+    /// A motion with noise, drawn.
+    ///
+    /// - `weights`: of the components;
+    /// - `rng`: of the motion.
+    pub(super) fn drawn_motion(&self, weights: &[f64], mut rng: ChaCha8Rng) -> MotionDraw {
+        let component = drawn(weights, rng.random());
+        let shares = self.latents.component_shares(component, weights.len());
+        let width = self.latents.width(rng.random());
+        let latents = std::array::from_fn(|m| {
+            width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
+        });
+        MotionDraw { component, latents, noise: Some(StepNoise { rng, width }) }
+    }
+}
+
+/// Motions of the components as paths, whose weights are scaled to sum to one.
+pub(super) fn weighted(followed: Vec<FollowedMotion>) -> Vec<ComponentPath> {
+    let sum: f64 = followed.iter().map(|motion| motion.weight).sum();
+    let path = |motion: FollowedMotion| ComponentPath {
+        weight: motion.weight / sum,
+        states: motion.states,
+    };
+    followed.into_iter().map(path).collect()
 }
 
 /// Mean of paths of `n_steps` steps.
@@ -289,39 +271,6 @@ pub(super) fn drawn(weights: &[f64], share: f64) -> usize {
     found.unwrap_or(weights.len().saturating_sub(1))
 }
 
-/// Turns the standard deviations of the velocities after a step into draws.
-type Noise<'a> = dyn FnMut(&mut [f64; N_RESIDUAL]) + 'a;
-
-/// One path.
-fn path(
-    dynamics: &Dynamics<'_>,
-    component: usize,
-    latents: &[f64; N_LATENTS],
-    noise: &mut Noise<'_>,
-    initial: &VehicleState<f64>,
-    inputs: &[VehicleInput<f64>],
-    batch: &mut NetworkBatch,
-) -> ComponentPath {
-    let mut states = Vec::with_capacity(inputs.len() + 1);
-    let mut state = *initial;
-    states.push(state);
-    let mut weight = 0.0;
-    for (i, u) in inputs.iter().enumerate() {
-        let next = dynamics.step(component, latents, &state, u, i as f64 * STEP_S, batch);
-        weight += dynamics.weight(component, batch) / inputs.len() as f64;
-        state = next;
-        let mut off = dynamics.noise(component, batch);
-        noise(&mut off);
-        let [vx, vy, yaw, roll] = off;
-        state.vx_body_m_s += vx;
-        state.vy_body_m_s += vy;
-        state.yaw_rate_rad_s += yaw;
-        state.roll_rate_rad_s += roll;
-        states.push(state);
-    }
-    ComponentPath { weight, states }
-}
-
 /// `Σ w x`; the weights sum to one.
 pub fn weighted_mean<'a>(
     states: impl Iterator<Item = (f64, &'a VehicleState<f64>)>,
@@ -333,75 +282,4 @@ pub fn weighted_mean<'a>(
         }
     }
     VehicleState::from_array(sum)
-}
-
-impl MotionDistribution {
-    /// The mixture of components, whose weights are scaled to sum to one.
-    pub fn new(mut components: Vec<ComponentMotion>) -> Self {
-        let sum: f64 = components.iter().map(|component| component.weight).sum();
-        components.iter_mut().for_each(|component| component.weight /= sum);
-        Self { components }
-    }
-
-    /// The mixture of several distributions that are equally likely, such as one for each drawn force
-    /// curve.
-    pub fn mixed(parts: Vec<Self>) -> Self {
-        Self::new(parts.into_iter().flat_map(|part| part.components).collect())
-    }
-
-    /// Number of instants.
-    pub fn n_instants(&self) -> usize {
-        self.components.first().map_or(0, |component| component.states.len())
-    }
-
-    /// Mean at an instant.
-    pub fn mean(&self, instant: usize) -> VehicleState<f64> {
-        let states = self
-            .components
-            .iter()
-            .filter_map(|component| Some((component.weight, &component.states.get(instant)?.mean)));
-        weighted_mean(states)
-    }
-
-    /// Covariance of [X, Y, ψ, v_x, v_y, r] at an instant, within the components and between them.
-    pub fn covariance(&self, instant: usize) -> SMatrix<f64, 6, 6> {
-        let mean = SVector::from(self.mean(instant).planar());
-        let part = |part: PlanarState| {
-            let off = part.mean - mean;
-            (part.covariance + off * off.transpose()) * part.weight
-        };
-        self.parts(instant).map(part).sum()
-    }
-
-    /// The distribution of the heading at an instant, rad, beyond a turn; `None` where it is not
-    /// finite.
-    pub fn heading(&self, instant: usize) -> Option<NormalMixture> {
-        self.marginal(instant, 2)
-    }
-
-    /// The distribution of X, Y, ψ, v_x, v_y or r at an instant; `None` where it is not finite.
-    pub fn marginal(&self, instant: usize, axis: usize) -> Option<NormalMixture> {
-        let part = |part: PlanarState| {
-            let std = part.covariance[(axis, axis)].max(LEAST_VARIANCE).sqrt();
-            NormalPart { weight: part.weight, mean: part.mean[axis], std }
-        };
-        NormalMixture::new(self.parts(instant).map(part).collect()).ok()
-    }
-
-    /// The distribution of the position at an instant.
-    pub fn position(&self, instant: usize) -> PlanarMixture {
-        let part = |PlanarState { weight, mean, covariance: p }: PlanarState| PlanarPart {
-            weight,
-            mean: [mean[0], mean[1]],
-            covariance: [p[(0, 0)], p[(0, 1)], p[(1, 1)]],
-        };
-        PlanarMixture::new(self.parts(instant).map(part).collect())
-    }
-
-    /// The normal distributions of [X, Y, ψ, v_x, v_y, r] at an instant, of both widths of every
-    /// component.
-    fn parts(&self, instant: usize) -> impl Iterator<Item = PlanarState> + '_ {
-        let parts = move |component: &ComponentMotion| component.at(instant);
-        self.components.iter().flat_map(parts)
-    }
 }

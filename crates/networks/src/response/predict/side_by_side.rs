@@ -1,5 +1,5 @@
-//! Evaluates and advances the sigma points of a step side by side, in the vector registers of the
-//! machine.
+//! Evaluates and advances states of several motions of one vehicle side by side, in the vector registers of
+//! the machine.
 
 use pulp::{Simd, WithSimd};
 
@@ -12,7 +12,8 @@ use impactlab_core::vehicle::{N_STATE, VehicleInput, VehicleState};
 /// States at which vehicle model, effects and features of the network are evaluated.
 pub(super) struct Evaluation<'a, 'b> {
     pub dynamics: &'a Dynamics<'b>,
-    pub component: usize,
+    /// The component of each state.
+    pub components: &'a [usize],
     pub u: &'a VehicleInput<f64>,
     pub time_s: f64,
     /// In the order of `eq:state_vector`.
@@ -39,16 +40,29 @@ impl WithSimd for Evaluation<'_, '_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { dynamics, component, u, time_s, states, batch, points } = self;
+        let Self { dynamics, components, u, time_s, states, batch, points } = self;
+        let seen_time_s = dynamics.seen_time_s(time_s);
         let u = Splat(simd).input(u);
-        for states in states.chunks(Packed::<S>::N) {
+        let n = Packed::<S>::N;
+        for (states, components) in states.chunks(n).zip(components.chunks(n)) {
             let x = VehicleState::from_array(Packed::columns(simd, states));
             let now = dynamics.model.constants.evaluate(&x, &u);
-            let features = Packed::rows(&features_of(dynamics.vehicle, &x, &now, time_s));
-            let terms = dynamics.effects_at(component, (&x, &now), time_s);
-            let values = Packed::rows(&terms.value);
+            let features = Packed::rows(&features_of(dynamics.vehicle, &x, &now, seen_time_s));
+            let amounts = dynamics.amounts(&x, &now);
+            let mut values = [[0.0; N_RESIDUAL]; MAX_LANES];
+            for component in 0..dynamics.network.n_components() {
+                if components.contains(&component) {
+                    let known = Packed::rows(&dynamics.known_effects(component, &amounts));
+                    for ((value, own), known) in values.iter_mut().zip(components).zip(known) {
+                        if *own == component {
+                            *value = known;
+                        }
+                    }
+                }
+            }
             let mut by_latents = [[[0.0; N_RESIDUAL]; MAX_LANES]; N_LATENTS];
-            for (rows, of_lanes) in by_latents.iter_mut().zip(&terms.by_latents) {
+            let of_lanes = dynamics.effects_by_latents(&amounts, time_s);
+            for (rows, of_lanes) in by_latents.iter_mut().zip(&of_lanes) {
                 *rows = Packed::rows(of_lanes);
             }
             let derivatives = Packed::rows(&now.derivative.to_array());

@@ -1,22 +1,21 @@
 //! Motions that are followed until the vehicle has come to rest, as coherent draws.
 //!
-//! When and where a vehicle comes to rest is decided by the instant at which its speed reaches zero,
-//! which is not normally distributed, even where the state is at every instant before. So it is not
-//! taken from the propagated moments of the state, but from whole motions, each with latent factors of
-//! its own that are drawn once.
+//! When and where a vehicle comes to rest is decided by the instant at which its speed reaches zero. It is
+//! told of whole motions, each with latent factors of its own that are drawn once.
 //!
 //! A motion may last longer than those that the network has learned from. From there on its remainder
 //! fades within a second, and physics and effects with their strengths go on: these depend on the state,
 //! not on time. What then decides is the resistance of a car that rolls on, which motions of a few
-//! seconds say little about; rolling resistance and air drag are therefore drawn for that time.
+//! seconds say little about; rolling resistance and air drag are therefore drawn for that time. As long as
+//! the network has a say, motions are followed side by side.
 
-use rand::RngExt;
 use rayon::prelude::*;
 
+use crate::response::predict::abreast::{FollowedMotion, MotionDraw};
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
-use crate::response::predict::predictor::{drawn, normal};
+use crate::response::predict::predictor::weighted;
 use crate::response::{N_LATENTS, Predictor, STEP_S};
-use impactlab_core::numerics::random_stream;
+use impactlab_core::numerics::{MAX_LANES, random_stream};
 use impactlab_core::vehicle::{RestWatch, VehicleInput, VehicleParameters, VehicleState};
 
 /// Standard deviations of the logarithms of rolling resistance and air drag of a car on the road, of
@@ -43,10 +42,13 @@ pub struct RestSearch {
     pub resistance_scatter: [f64; 2],
 }
 
-/// What is drawn once for a motion.
-struct MotionDraw {
-    component: usize,
-    latents: [f64; N_LATENTS],
+/// Motions of a vehicle that were followed to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SettledMotions {
+    /// That of each component with every latent factor at zero.
+    pub paths: Vec<SettledMotion>,
+    /// Coherent draws.
+    pub draws: Vec<SettledMotion>,
 }
 
 impl Predictor {
@@ -62,7 +64,7 @@ impl Predictor {
         self.fitted_to(initial, inputs).into_owned()
     }
 
-    /// Coherent draws, each followed to rest.
+    /// The motions of the components and coherent draws, each followed to rest.
     ///
     /// - `inputs`: the input over each step, as many as the motion may take;
     /// - `draws`: numbers of the draws, which decide on what is drawn.
@@ -72,45 +74,67 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
         draws: &[usize],
         search: &RestSearch,
-    ) -> Vec<SettledMotion> {
+    ) -> SettledMotions {
         let fitted = self.fitted_to(initial, inputs);
         let dynamics = fitted.dynamics();
-        // What a component weighs is known as far as the network is.
-        let n_learned = ((fitted.network.learned_s() / STEP_S).ceil() as usize).min(inputs.len());
-        let paths = self.paths(initial, inputs.get(..n_learned).unwrap_or(inputs));
-        let weights: Vec<f64> = paths.iter().map(|path| path.weight).collect();
+        let (paths, weights) = self.settled_components(&fitted, initial, inputs);
+        let learned_s = fitted.network.learned_s();
+        let is_learned = |i: &usize| (*i as f64 * STEP_S) < learned_s;
+        let (learned, rest) = inputs.split_at((0..inputs.len()).take_while(is_learned).count());
         let draw = |&idx: &usize| {
-            let mut rng = random_stream(search.seed, "motions to rest", idx as u64);
-            let component = drawn(&weights, rng.random());
-            let shares = fitted.latents.component_shares(component, weights.len());
-            let width = fitted.latents.width(rng.random());
-            let latents = std::array::from_fn(|m| {
-                width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
-            });
-            let [rolling, air] =
-                search.resistance_scatter.map(|scatter| (scatter * normal(&mut rng)).exp());
-            let resisted = with_resistance(&fitted.vehicle, [rolling, air]);
-            let beyond = Dynamics::new(&resisted, &fitted.network, &fitted.latents);
-            let draw = MotionDraw { component, latents };
-            follow([&dynamics, &beyond], &draw, initial, inputs, || width * normal(&mut rng))
+            let rng = random_stream(search.seed, "motions to rest", idx as u64);
+            let mut draw = fitted.drawn_motion(&weights, rng);
+            let factors = search.resistance_scatter.map(|scatter| (scatter * draw.normal()).exp());
+            (draw, factors)
         };
-        draws.par_iter().map(draw).collect()
+        let settle = |numbers: &[usize]| {
+            let (draws, factors): (Vec<MotionDraw>, Vec<[f64; 2]>) =
+                numbers.iter().map(&draw).unzip();
+            let mut watches: Vec<RestWatch> =
+                draws.iter().map(|_| watch(&fitted.vehicle, inputs)).collect();
+            let motions = settling(&dynamics, draws, &mut watches, initial, learned);
+            let go_on = |((mut motion, mut watch), factors): ((FollowedMotion, RestWatch), _)| {
+                if !rest.is_empty() && motion.states.len() > learned.len() {
+                    let resisted = with_resistance(&fitted.vehicle, factors);
+                    let beyond = Dynamics::new(&resisted, &fitted.network, &fitted.latents);
+                    follow_on(&beyond, &mut motion, &mut watch, inputs, learned.len());
+                }
+                settled(motion, &watch)
+            };
+            motions.into_iter().zip(watches).zip(factors).map(go_on).collect::<Vec<_>>()
+        };
+        SettledMotions { paths, draws: draws.par_chunks(MAX_LANES).flat_map_iter(settle).collect() }
     }
 
-    /// The path of each component with every latent factor at zero, followed to rest, with its
-    /// probability.
-    pub fn settled_paths(
+    /// The motion of each component with every latent factor at zero, followed to rest, and the
+    /// probabilities of the components.
+    ///
+    /// - `fitted`: this predictor for motions under these inputs.
+    fn settled_components(
         &self,
+        fitted: &Self,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
-    ) -> Vec<SettledMotion> {
-        let fitted = self.fitted_to(initial, inputs);
-        let dynamics = fitted.dynamics();
-        let path = |component| {
-            let draw = MotionDraw { component, latents: [0.0; N_LATENTS] };
-            follow([&dynamics; 2], &draw, initial, inputs, || 0.0)
+    ) -> (Vec<SettledMotion>, Vec<f64>) {
+        // What a component weighs is known as far as the network is.
+        let n_learned = ((fitted.network.learned_s() / STEP_S).ceil() as usize).min(inputs.len());
+        let (learned, rest) = inputs.split_at(n_learned);
+        let n = fitted.n_components();
+        let mut draws: Vec<MotionDraw> =
+            (0..n).map(|j| MotionDraw::certain(j, [0.0; N_LATENTS])).collect();
+        if rest.is_empty() {
+            draws.extend((0..n).map(|j| MotionDraw::certain(j, fitted.mean_latents(j))));
+        }
+        let mut watches: Vec<RestWatch> = (0..n).map(|_| watch(&fitted.vehicle, inputs)).collect();
+        let mut motions = settling(&fitted.dynamics(), draws, &mut watches, initial, inputs);
+        let at_means = motions.split_off(n);
+        let paths = match rest.is_empty() {
+            true => weighted(at_means),
+            false => self.paths(initial, learned),
         };
-        (0..self.n_components()).map(path).collect()
+        let weights = paths.iter().map(|path| path.weight).collect();
+        let of_components = motions.into_iter().zip(&watches);
+        (of_components.map(|(motion, watch)| settled(motion, watch)).collect(), weights)
     }
 }
 
@@ -127,38 +151,118 @@ pub(crate) fn with_resistance(
     resisted
 }
 
-/// Follows one motion.
-///
-/// - `dynamics`: as long as the network has learned from motions, and after that;
-/// - `normal`: draws of the noise, in standard deviations.
-fn follow(
-    dynamics: [&Dynamics<'_>; 2],
-    draw: &MotionDraw,
-    initial: &VehicleState<f64>,
-    inputs: &[VehicleInput<f64>],
-    mut normal: impl FnMut() -> f64,
-) -> SettledMotion {
+/// Looks for rest once nothing changes from outside any more.
+fn watch(vehicle: &VehicleParameters, inputs: &[VehicleInput<f64>]) -> RestWatch {
     let changes = |pair: &[VehicleInput<f64>]| pair[0] != pair[1];
     let last_change = inputs.windows(2).rposition(changes).map_or(0, |before| before + 1);
-    let [within, _] = dynamics;
-    let mut watch = RestWatch::after(last_change as f64 * STEP_S).of(within.vehicle);
+    RestWatch::after(last_change as f64 * STEP_S).of(vehicle)
+}
+
+/// Follows motions side by side.
+///
+/// - `watches`: of the first ones, which end where they have come to rest; the others are followed to the
+///   end of the inputs.
+fn settling(
+    dynamics: &Dynamics<'_>,
+    draws: Vec<MotionDraw>,
+    watches: &mut [RestWatch],
+    initial: &VehicleState<f64>,
+    inputs: &[VehicleInput<f64>],
+) -> Vec<FollowedMotion> {
+    dynamics.follow(draws, initial, inputs, |idx, time_s, state| {
+        !watches.get_mut(idx).is_some_and(|watch| watch.has_settled(time_s, state))
+    })
+}
+
+/// Follows a motion further.
+///
+/// - `n_done`: inputs under which it was followed.
+fn follow_on(
+    dynamics: &Dynamics<'_>,
+    motion: &mut FollowedMotion,
+    watch: &mut RestWatch,
+    inputs: &[VehicleInput<f64>],
+    n_done: usize,
+) {
+    let FollowedMotion { draw, states, .. } = motion;
     let mut batch = NetworkBatch::default();
-    let (mut state, mut states) = (*initial, vec![*initial]);
-    for (i, u) in inputs.iter().enumerate() {
+    for (i, u) in inputs.iter().enumerate().skip(n_done) {
         let time_s = i as f64 * STEP_S;
-        if watch.has_settled(time_s, &state) {
+        let Some(state) = states.last().filter(|state| !watch.has_settled(time_s, state)) else {
             break;
-        }
-        let dynamics = dynamics[usize::from(time_s >= within.network.learned_s())];
-        state = dynamics.step(draw.component, &draw.latents, &state, u, time_s, &mut batch);
-        let [vx, vy, yaw, roll] = dynamics.noise(draw.component, &batch).map(|std| std * normal());
-        state.vx_body_m_s += vx;
-        state.vy_body_m_s += vy;
-        state.yaw_rate_rad_s += yaw;
-        state.roll_rate_rad_s += roll;
-        states.push(state);
+        };
+        let mut next = dynamics.step(draw.component, &draw.latents, state, u, time_s, &mut batch);
+        draw.add_noise(&mut next, dynamics.noise([0, draw.component], &batch));
+        states.push(next);
     }
+}
+
+/// A motion that was followed to rest, or to the end of its inputs.
+fn settled(motion: FollowedMotion, watch: &RestWatch) -> SettledMotion {
+    let states = motion.states;
     let end_s = (states.len() - 1) as f64 * STEP_S;
     let rest = watch.since_s(end_s).map(|since_s| (since_s / STEP_S).round() as usize);
     SettledMotion { states, rest }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::predict::test_motions::{predictor, released};
+
+    /// The motion followed by itself, with its vehicle after the time that was learned from.
+    fn by_itself(
+        predictor: &Predictor,
+        mut draw: MotionDraw,
+        search: &RestSearch,
+        initial: VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> SettledMotion {
+        let factors = search.resistance_scatter.map(|scatter| (scatter * draw.normal()).exp());
+        let resisted = with_resistance(&predictor.vehicle, factors);
+        let beyond = Dynamics::new(&resisted, &predictor.network, &predictor.latents);
+        let within = predictor.dynamics();
+        let (mut watch, mut batch) = (watch(&predictor.vehicle, inputs), NetworkBatch::default());
+        let (mut state, mut states) = (initial, vec![initial]);
+        for (i, u) in inputs.iter().enumerate() {
+            let time_s = i as f64 * STEP_S;
+            if watch.has_settled(time_s, &state) {
+                break;
+            }
+            let dynamics = if time_s < predictor.learned_s() { &within } else { &beyond };
+            state = dynamics.step(draw.component, &draw.latents, &state, u, time_s, &mut batch);
+            draw.add_noise(&mut state, dynamics.noise([0, draw.component], &batch));
+            states.push(state);
+        }
+        let rest = watch.since_s((states.len() - 1) as f64 * STEP_S);
+        SettledMotion { states, rest: rest.map(|since_s| (since_s / STEP_S).round() as usize) }
+    }
+
+    #[test]
+    fn motions_side_by_side_settle_as_each_does_by_itself() {
+        let initial = VehicleState { yaw_rate_rad_s: 0.05, ..VehicleState::driving_straight(0.4) };
+        let inputs = released(500);
+        let search = RestSearch { seed: 7, resistance_scatter: RESISTANCE_SCATTER };
+        let numbers: Vec<usize> = (0..MAX_LANES + 3).collect();
+        for learned_s in [0.3, f64::INFINITY] {
+            let mut predictor = predictor();
+            predictor.network = predictor.network.clone().learned_for(learned_s);
+            let n_learned = if learned_s.is_finite() { 30 } else { inputs.len() };
+            let paths = predictor.paths(&initial, &inputs[..n_learned]);
+            let weights: Vec<f64> = paths.iter().map(|path| path.weight).collect();
+            let settled = predictor.settled(&initial, &inputs, &numbers, &search);
+            assert_eq!(settled.draws.len(), numbers.len());
+            for (idx, motion) in settled.draws.iter().enumerate() {
+                let rng = random_stream(search.seed, "motions to rest", idx as u64);
+                let draw = predictor.drawn_motion(&weights, rng);
+                let expected = by_itself(&predictor, draw, &search, initial, &inputs);
+                assert_eq!(*motion, expected, "{learned_s} s, draw {idx}");
+            }
+            for (component, motion) in settled.paths.iter().enumerate() {
+                let draw = MotionDraw::certain(component, [0.0; N_LATENTS]);
+                let expected = by_itself(&predictor, draw, &search, initial, &inputs);
+                assert_eq!(*motion, expected, "{learned_s} s, component {component}");
+            }
+        }
+    }
 }

@@ -16,6 +16,7 @@ mod training_run;
 
 mod fleet;
 mod strengths_over_cars;
+mod widths;
 
 mod stages;
 
@@ -28,3 +29,4 @@ pub(crate) use stages::check_start;
 pub use stages::{ResponseTrainSettings, ResponseTrainingSet, fine_tune, pretrain};
 pub use strengths_over_cars::{UnseenCars, learn_population};
 pub use training_run::RESPONSE_CHECKPOINT;
+pub use widths::recalibrate;

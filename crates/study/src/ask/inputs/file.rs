@@ -9,6 +9,7 @@ use impactlab_core::data::ColumnMap;
 
 /// A file of time series and which of its columns is what.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct SeriesFile {
     /// The file.
     pub path: PathBuf,

@@ -22,6 +22,7 @@ use impactlab_core::vehicle::VehicleParameters;
 
 /// Asks what is in files and data sets, in which units, and what is wrong with them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct CheckRequest {
     /// Data sets, folders of data sets, files of time series, scenarios, vehicles.
     pub paths: Vec<PathBuf>,

@@ -34,6 +34,7 @@ pub const DEFAULT_CHOICES: u64 = 3;
 
 /// Asks which response model does best on motions that none has seen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct CompareRequest {
     /// A trajectory data set; a share of its cases is kept apart for the test. With
     /// [`CompareRequest::leave_one_car_out`] a folder of such sets, one for each car.

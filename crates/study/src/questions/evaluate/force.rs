@@ -31,6 +31,7 @@ const N_SAMPLE_CASES: usize = 6;
 
 /// Asks how well a force network predicts the cases of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct EvaluateForceRequest {
     /// The force network.
     #[serde(default)]

@@ -43,6 +43,7 @@ pub enum PairSplit {
 /// Asks how well both vehicles of recorded pairs are forecast from their initial states and what their
 /// drivers did.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct EvaluatePairsRequest {
     /// The folder of recorded pairs.
     pub data: PathBuf,

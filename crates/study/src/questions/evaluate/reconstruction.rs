@@ -27,6 +27,7 @@ use impactlab_reconstruct::evaluate::{
 
 /// Asks how well the speeds of staged collisions are reconstructed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct EvaluateReconstructionRequest {
     /// The folder of staged collisions: `evidence/<case>.toml` and `truth/<case>.toml`.
     pub data: PathBuf,

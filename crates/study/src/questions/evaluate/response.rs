@@ -17,6 +17,7 @@ use impactlab_networks::response::{Correction, ResponseCase, ResponseModel};
 
 /// Asks how well a response network predicts the motions of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct EvaluateResponseRequest {
     /// The response network.
     #[serde(default)]

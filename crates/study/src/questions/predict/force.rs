@@ -24,6 +24,7 @@ use impactlab_networks::force::{
 
 /// Asks which force a collision brings about, and how sure that is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct PredictForceRequest {
     /// The collision.
     pub collision: ForceQuestion,
@@ -47,7 +48,7 @@ pub struct PredictForceRequest {
 
 /// The collision whose force is asked about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ForceQuestion {
     /// A scenario of two vehicles.
     Scenario(ScenarioChoice),
@@ -185,6 +186,7 @@ impl ForceQuestion {
                 unused = by_force_network(choice, &scenario)?;
                 contact = Some(scenario.contact);
                 let geometry = scenario.geometry().ok();
+                unused.extend(restrictions::backwards(&scenario));
                 unused.extend(geometry.as_ref().and_then(assumed::first_touch));
                 overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
                 let numbers = ForceScenario::from_scenario(&scenario);

@@ -35,9 +35,8 @@ use impactlab_networks::response::OutsideDomain;
 /// ends of the 90 % intervals of the example by less than a tenth of their width.
 pub const DEFAULT_DRAWS: usize = 200;
 
-/// Vehicles that a forecast of the struck vehicle by itself draws where nobody says how many. Each has a
-/// distribution of its own, and not a single motion as in a forecast of both vehicles: 200 of them move
-/// the results no less from seed to seed than 32 do, and take four times as long.
+/// Vehicles that a forecast of the struck vehicle by itself draws where nobody says how many. Each is
+/// followed in several whole motions, and not in a single one as in a forecast of both vehicles.
 pub const ONE_VEHICLE_DRAWS: usize = 32;
 
 /// How many force curves and vehicles the coarse answer draws.
@@ -45,6 +44,7 @@ pub const COARSE_DRAWS: usize = 5;
 
 /// Asks where the struck vehicle goes, by the response network, and how sure that is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct PredictMotionRequest {
     /// The struck vehicle, its start, and the force that it takes.
     pub motion: SimulateRequest,

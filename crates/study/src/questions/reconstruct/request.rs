@@ -48,6 +48,7 @@ const FOLLOWED_PER_PARTICLE: usize = 20;
 
 /// Asks how fast both cars were, or a single one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct ReconstructRequest {
     /// What was found.
     pub evidence: EvidenceChoice,

@@ -55,6 +55,16 @@ pub(super) const GROUPS: &[Group] = &[
     },
     Group {
         subject: CaveatSubject::Wheels,
+        latents: &[Latent::BrakedBeforeShare],
+        reason: [
+            "how hard the driver braked before the start is not said; otherwise: [start] \
+             braked_before_share",
+            "wie stark der Fahrer vor dem Anfang bremste, ist nicht angegeben; sonst: [start] \
+             braked_before_share",
+        ],
+    },
+    Group {
+        subject: CaveatSubject::Wheels,
         latents: &[Latent::AntiLockDecision],
         reason: [
             "without it, wheels that are braked too hard lock and slide, and the car was slower; otherwise: \
@@ -85,7 +95,16 @@ pub(super) const GROUPS: &[Group] = &[
 
 /// What the question or the evidence says and the answer does not depend on.
 pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<Caveat> {
-    let Start { road_wheel_rad, brake_start_s, brake_share, .. } = &evidence.start;
+    let Start {
+        road_wheel_rad,
+        brake_start_s,
+        brake_share,
+        braked_before_s,
+        braked_before_share,
+        ..
+    } = &evidence.start;
+    let is_before_idle =
+        braked_before_s.or(*braked_before_share).is_some() && !evidence.brakes_before_start();
     let brakes = brake_start_s.or(*brake_share);
     let (after, is_all_locked) = (&evidence.after, evidence.after.is_all_locked());
     let alone =
@@ -104,6 +123,14 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
         ),
         (request.one_contact, ["the choice of one contact", "die Wahl eines Kontakts"], alone),
         (is_idle && brakes.is_some(), ["ranges of the braking", "Bereiche der Bremsung"], locked),
+        (
+            is_before_idle,
+            ["ranges of the braking before the start", "Bereiche der Bremsung vor dem Anfang"],
+            [
+                "its driver is said not to have braked, or for how long he did is not said",
+                "sein Fahrer bremste nach der Angabe nicht, oder deren Dauer ist nicht angegeben",
+            ],
+        ),
         (is_idle && is_anti_lock, ["anti-lock brakes", "das Antiblockiersystem"], locked),
         (
             is_all_locked && road_wheel_rad.is_some(),
@@ -165,6 +192,25 @@ mod tests {
             "case = \"skid\"\nkind = \"single_car\"\n[car]\n[start]\n{start}\n[wheels]\n{wheels}\n{mark}"
         );
         Evidence::from_toml(TomlFile { path: Path::new("case.toml"), text: &text }).unwrap()
+    }
+
+    #[test]
+    fn what_is_taken_of_braking_before_the_start_is_said() {
+        let told = |start: &str, wheels: &str| {
+            let evidence = evidence(start, wheels);
+            let model = ForwardModel::new(&evidence, Cars::new(&evidence, None, None));
+            let all = assumptions(&evidence, &model);
+            all.iter().any(|caveat| caveat.to_string().contains("[start] braked_before_share"))
+        };
+        let (time, share) = ("braked_before_s = [0.2, 0.4]", "braked_before_share = [0.4, 0.5]");
+        let both = format!("{time}\n{share}");
+        assert!(told(time, ""));
+        assert!(!told(&both, "") && !told(share, "") && !told("", ""));
+        let request = ReconstructRequest::new(crate::EvidenceChoice::File("case.toml".into()));
+        let unused =
+            |start: &str, wheels: &str| !unused(&request, &evidence(start, wheels)).is_empty();
+        assert!(unused(share, "") && unused(&both, "driver_braked = \"no\""));
+        assert!(!unused(&both, "") && !unused(time, ""));
     }
 
     #[test]

@@ -25,6 +25,7 @@ use impactlab_core::vehicle::{Equations, Integrator, Motion};
 /// Asks how far the 4DOF model lies from every recorded motion of a data set. Both vehicles of a recorded pair
 /// are followed through all contacts, by what their drivers did.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct SimulateDatasetRequest {
     /// The data set.
     pub dataset: PathBuf,

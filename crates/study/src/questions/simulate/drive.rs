@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{AnalysisError, DriveSetup, Settings};
 use crate::ask::checks::{check, check_contact, check_given};
-use crate::caveats::restrictions::doubtful_data_caveats;
+use crate::caveats::restrictions::{backwards_caveat, doubtful_data_caveats};
 use crate::questions::simulate::motion_source::acting_force;
 use crate::{Library, SeriesFile, StudyError};
 use impactlab_core::data::{
@@ -31,7 +31,7 @@ const STANDING_M_S: f64 = 0.5;
 
 /// How a vehicle starts and what pushes and steers it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default)]
+#[serde(default, deny_unknown_fields)]
 pub struct Drive {
     /// Forward speed at the start, m/s.
     pub speed_m_s: Option<f64>,
@@ -83,6 +83,8 @@ impl Drive {
         self.check_one_control(&settings.ending)?;
         let loaded = self.force.as_ref().map(|file| library.series(file)).transpose()?;
         let [speed_m_s, vy_m_s] = self.velocity_m_s(loaded.as_deref(), caveats)?;
+        let which = Phrase::new("the vehicle", "das Fahrzeug");
+        caveats.extend(backwards_caveat(which, speed_m_s));
         let mut notes = Vec::new();
         let load = match self.force.as_ref().zip(loaded) {
             Some((file, loaded)) => {
@@ -103,6 +105,7 @@ impl Drive {
             Some(file) if !self.fishhook => {
                 let loaded = read_steer_file(&file.path, file.map.as_ref())
                     .map_err(|error| error.of_option("--steer-map"))?;
+                notes.extend(notes_on(file, &loaded));
                 let steer = steer_history(&file.path, &loaded.series, self.steering_ratio)?;
                 let acts = |sample: usize| steer.steer_rad.get(sample).is_some_and(|a| *a != 0.0);
                 caveats.extend(covered(file, &loaded, duration_s, acts)?);
@@ -116,6 +119,7 @@ impl Drive {
             Some(file) => {
                 let loaded = read_wheels_file(&file.path, file.map.as_ref())
                     .map_err(|error| error.of_option("--wheels-map"))?;
+                notes.extend(notes_on(file, &loaded));
                 let wheels = wheel_history(&loaded.series, &settings.struck);
                 let free = [WheelEffort::none(); 4];
                 let acts = |sample: usize| wheels.wheels.get(sample).is_some_and(|at| *at != free);
@@ -282,6 +286,11 @@ fn force_of(
             Err(StudyError::Series { path: file.path.clone(), source })
         }
     }
+}
+
+/// The remarks on a recording of controls, such as units that nobody states, with its name.
+fn notes_on(file: &SeriesFile, loaded: &Loaded) -> Vec<String> {
+    loaded.notes.iter().map(|note| format!("{}: {note}", file.title())).collect()
 }
 
 /// Checks that a recording of controls covers the motion that it acts in, and says what of it acts

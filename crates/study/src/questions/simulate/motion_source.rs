@@ -24,7 +24,7 @@ pub const ASSUMED_CONTACT: ContactPoint =
 
 /// What drives a motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum MotionSource {
     /// A case of a data set, with its recorded start and force.
     Case {

@@ -45,6 +45,7 @@ use impactlab_core::vehicle::{
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct SimulateRequest {
     /// What drives the motion.
     pub source: MotionSource,
@@ -468,6 +469,7 @@ fn contact_of(
     caveats: &mut Caveats,
 ) -> (Option<MomentumReport>, Option<Caveat>) {
     let geometry = scenario.geometry().ok();
+    caveats.extend(restrictions::backwards(scenario));
     caveats.extend(geometry.as_ref().and_then(assumed::first_touch));
     let overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
     let Ok(impact) = scenario.impact() else { return (None, overlap) };

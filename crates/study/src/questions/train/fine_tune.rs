@@ -41,6 +41,7 @@ pub enum Learning {
 
 /// Asks for a response network that has learned from recorded motions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct FineTuneRequest {
     /// What is learned.
     #[serde(default)]

@@ -21,6 +21,7 @@ use impactlab_networks::force::{
 
 /// Asks for a force network that has learned from force data sets.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct TrainForceRequest {
     /// A force data set; a share of its cases is kept apart for the test.
     pub data: PathBuf,

@@ -35,6 +35,7 @@ const STEERING: [Channel; 4] =
 
 /// Logs of single impacts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct MotionLogs {
     /// Log files, and folders of such files.
     pub logs: Vec<PathBuf>,

@@ -29,6 +29,7 @@ use impactlab_networks::response::{
 
 /// Asks for a response network that has learned from simulations under recorded forces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct TrainResponseRequest {
     /// A force or trajectory data set: its forces drive the simulations; a share of its cases is
     /// left out, so that they can serve as a test later.

@@ -6,11 +6,13 @@
 //! /rcforc/d000001     time, x_force, y_force, z_force, z_moment: one number for each id and side
 //! /secforc/d000001    time, x_force, y_force, z_force
 //! /nodout/d000001     time, x_coordinate, y_coordinate, x_velocity, y_velocity
+//! /rbdout/d000001     time, ids, num_nodal (how many of them, the last ones, are made of nodes), global_x, …
 //! /matsum/d000001     time, x_momentum, y_momentum, x_rbvelocity, y_rbvelocity of each part
 //! ```
 //!
-//! Other folders are skipped. A state whose time is not later than that of one before it counts in its
-//! place, as after a restart.
+//! The ids of rbdout stand in its metadata or in each state; bodies that are rigid for a while only are left out
+//! with the reason. Other folders are skipped. A state whose time is not later than that of one before it counts
+//! in its place, as after a restart.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,6 +24,7 @@ use crate::data::formats::fem::legend::plain_title;
 use crate::data::formats::fem::lsda::{self, Array};
 use crate::data::formats::fem::momenta::{Momenta, PartMomentum};
 use crate::data::formats::fem::parts::parts;
+use crate::data::formats::fem::rbdout;
 use crate::data::formats::fem::results::{FORCE, History, Kind, MOMENT, NODE, Results, columns};
 use crate::data::formats::fem::states::{cut_state, written_again};
 use crate::data::{DataError, Place};
@@ -33,10 +36,14 @@ const NODES: (&str, &[&str]) =
     ("nodout", &["x_coordinate", "y_coordinate", "x_velocity", "y_velocity"]);
 const PARTS: (&str, &[&str]) =
     ("matsum", &["x_momentum", "y_momentum", "x_rbvelocity", "y_rbvelocity"]);
-const READ: [(&str, &[&str]); 4] = [CONTACTS, SECTIONS, NODES, PARTS];
+const BODIES: (&str, &[&str]) = ("rbdout", &rbdout::ARRAYS);
+const READ: [(&str, &[&str]); 5] = [CONTACTS, SECTIONS, NODES, PARTS, BODIES];
 
 /// Arrays of the metadata that are read.
-const METADATA: [&str; 4] = ["ids", "side", "legend", "legend_ids"];
+const METADATA: [&str; 5] = ["ids", "side", "legend", "legend_ids", "num_nodal"];
+
+/// Those of them that a state of rigid bodies may have of its own.
+const OF_STATE: [&str; 2] = ["ids", "num_nodal"];
 
 /// A folder as it is read.
 #[derive(Default)]
@@ -46,6 +53,10 @@ struct Folder {
     legend: Vec<u8>,
     legend_ids: Vec<f64>,
     states: Vec<State>,
+    /// How many of the ids, the last ones, are bodies that are made of nodes.
+    n_nodal: usize,
+    /// Whether there are others at another instant.
+    ids_change: bool,
 }
 
 /// Arrays of one instant, by their names.
@@ -87,8 +98,10 @@ pub(super) fn read(path: &Path) -> Result<Results, DataError> {
         Results { format: "an LS-DYNA binout file", notes, doubts, ..Results::default() };
     results.add(&mut folders).map_err(&damaged)?;
     if results.histories.is_empty() {
-        let names = "rcforc, secforc or nodout with states";
-        return Err(damaged(format!("is a binout of LS-DYNA without {names}; write one of them")));
+        let names = "rcforc, secforc, nodout or rbdout with states";
+        let seen = results.doubts.last().map_or_else(String::new, |seen| format!(" ({seen})"));
+        let why = format!("is a binout of LS-DYNA without {names}; write one of them{seen}");
+        return Err(damaged(why));
     }
     Ok(results)
 }
@@ -97,10 +110,11 @@ pub(super) fn read(path: &Path) -> Result<Results, DataError> {
 fn is_read(folder: &[String], name: &str) -> bool {
     let [database, inner] = folder else { return false };
     let found = READ.into_iter().find(|(of, _)| *of == database.as_str());
-    let Some((_, arrays)) = found else { return false };
+    let Some((database, arrays)) = found else { return false };
+    let is_of_state = database == BODIES.0 && OF_STATE.contains(&name);
     match inner.as_str() {
         "metadata" => METADATA.contains(&name),
-        _ => is_state(inner) && (name == "time" || arrays.contains(&name)),
+        _ => is_state(inner) && (name == "time" || is_of_state || arrays.contains(&name)),
     }
 }
 
@@ -125,12 +139,19 @@ fn keep(
         ("metadata", "legend") => of.legend = values.into_bytes(),
         ("metadata", "legend_ids") => of.legend_ids = values.into_numbers(),
         ("metadata", "side") => of.sides = values.into_numbers(),
-        ("metadata", _) => {
+        (_, "num_nodal") => {
+            of.n_nodal = values.into_numbers().first().map_or(0, |n| *n as usize);
+        }
+        (_, "ids") => {
             let ids = values.into_numbers();
-            if !of.ids.is_empty() && !ids.is_empty() && of.ids != ids {
+            let is_other = !of.ids.is_empty() && of.ids != ids;
+            if is_other && !ids.is_empty() && database != BODIES.0 {
                 return Err(format!("the ids of {database} are others than before"));
             }
-            of.ids = ids;
+            of.ids_change |= is_other;
+            if !ids.is_empty() {
+                of.ids = ids;
+            }
         }
         (state, _) => {
             let is_same = |last: &State| last.place.0 == part && last.place.1 == state;
@@ -162,6 +183,15 @@ impl Results {
         }
         if let Some((table, _)) = self.table(PARTS, folders)? {
             self.momenta = table.momenta();
+        }
+        // Bodies that become deformable are no reason to refuse the forces.
+        let bodies = self.table(BODIES, folders).and_then(|found| match found {
+            Some((table, folder)) => table.bodies(&folder),
+            None => Ok(Vec::new()),
+        });
+        match bodies {
+            Ok(bodies) => self.histories.extend(bodies),
+            Err(why) => self.doubts.push(format!("rigid bodies are left out: {why}")),
         }
         Ok(())
     }
@@ -250,6 +280,24 @@ impl Table {
             is_whole.then(|| History::new(kind, name, &time, columns(names, values)))
         };
         self.ids.iter().enumerate().filter_map(history).collect()
+    }
+
+    /// The motion of each rigid body. The error is why they cannot be read.
+    fn bodies(&self, folder: &Folder) -> Result<Vec<History>, String> {
+        let name = BODIES.0;
+        if folder.ids_change {
+            return Err(format!("{name} has other bodies at other instants"));
+        }
+        let lacking = BODIES.1.iter().zip(&self.arrays).find(|(_, rows)| rows.is_none());
+        if let Some((array, _)) = lacking {
+            return Err(format!("{name} has no {array}"));
+        }
+        let time = Arc::new(self.time.clone());
+        let n_rigid = self.ids.len().saturating_sub(folder.n_nodal);
+        let body = |(at, id): (usize, &i64)| {
+            rbdout::history((at >= n_rigid, *id), &time, self.columns(at))
+        };
+        Ok(self.ids.iter().enumerate().map(body).collect())
     }
 
     /// The force on each side of each contact.

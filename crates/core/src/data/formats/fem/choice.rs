@@ -6,19 +6,21 @@
 //! sheet=contact 3 master + contact 5 master   the sum of several
 //! sheet=node 101                         the path of a node
 //! sheet=node 101 to node 102             with the yaw angle: the line from the first to the second
+//! sheet=body 5                           the path of a rigid body
+//! sheet=body 5 along -x                  with the yaw angle of a car that begins with this heading
 //! ```
 
 use std::path::Path;
 
 use crate::data::formats::fem::deck::{DeckUnits, Dimension, shown};
+use crate::data::formats::fem::motion::{
+    Along, Shown, bent, motion_of, motion_of_body, not_ahead, path_of, tilted,
+};
 use crate::data::formats::fem::results::{History, Kind, MOMENT, Results};
 use crate::data::formats::fem::start::ModelStart;
 use crate::data::{DataError, Sheet, SheetRef};
-use crate::numerics::counted_turns_rad;
 
-/// Largest change of the distance of two nodes that are taken for an axis of the car, and largest
-/// disagreement of both sides of a contact, as shares.
-const RIGID: f64 = 0.02;
+/// Largest disagreement of both sides of a contact, as a share.
 const OPPOSITE: f64 = 0.02;
 
 /// Most histories that are listed.
@@ -33,8 +35,11 @@ pub(super) struct Chosen<'a> {
 
 enum What<'a> {
     Forces(Vec<&'a History>),
-    Node(&'a History),
+    /// The path of a node or a rigid body.
+    Path(&'a History),
     Axis([&'a History; 2]),
+    /// The motion of a rigid body that begins with a heading.
+    Body(&'a History, Along),
 }
 
 impl<'a> Chosen<'a> {
@@ -50,14 +55,14 @@ impl<'a> Chosen<'a> {
         let found = match wanted {
             None => default(results),
             Some(SheetRef::Number(number)) => {
-                number.checked_sub(1).and_then(|at| results.histories.get(at)).map(single)
+                number.checked_sub(1).and_then(|at| numbered(results, at))
             }
             Some(SheetRef::Name(name)) => named(results, name),
         };
         let Some(what) = found else {
-            let text = || "a force or the motion of a node".to_owned();
+            let text = || "a force or a motion".to_owned();
             let wanted = wanted.map_or_else(text, SheetRef::to_string);
-            let found = results.labels();
+            let found = listed(results);
             return Err(DataError::NoSheet { path: path.to_owned(), wanted, found });
         };
         Ok(Self { what, is_said: wanted.is_some() })
@@ -66,13 +71,16 @@ impl<'a> Chosen<'a> {
     fn parts(&self) -> &[&'a History] {
         match &self.what {
             What::Forces(parts) => parts,
-            What::Node(node) => std::slice::from_ref(node),
+            What::Path(of) | What::Body(of, _) => std::slice::from_ref(of),
             What::Axis(nodes) => nodes,
         }
     }
 
     fn name(&self) -> String {
         let between = if matches!(self.what, What::Axis(_)) { " to " } else { " + " };
+        if let What::Body(body, along) = self.what {
+            return named_along(body, along);
+        }
         match self.parts() {
             [only] => only.label(),
             parts => {
@@ -84,8 +92,7 @@ impl<'a> Chosen<'a> {
 
     /// The part of the file that is read, and all that there are.
     pub(super) fn sheet(&self, results: &Results) -> Sheet {
-        let all = results.labels().into_iter().take(MAX_LISTED).collect();
-        Sheet { name: self.name(), all }
+        Sheet { name: self.name(), all: listed(results) }
     }
 
     /// What is read and how, in words.
@@ -113,7 +120,9 @@ impl<'a> Chosen<'a> {
                 text +=
                     "; x and y are the axes of the model, taken as the plane of the road with z up";
             }
-            What::Node(_) | What::Axis(_) => {
+            What::Path(of) if of.kind == Kind::RigidBody => text += OF_BODY,
+            What::Body(..) => text += OF_BODY,
+            What::Path(_) | What::Axis(_) => {
                 text += "; the first node stands for the centre of gravity";
             }
         }
@@ -140,8 +149,13 @@ impl<'a> Chosen<'a> {
         if let Some((checked, true)) = self.momentum(results, deck) {
             doubts.push(checked);
         }
-        if let What::Axis(nodes) = &self.what {
-            doubts.extend(bent(nodes));
+        match &self.what {
+            What::Axis(nodes) => doubts.extend(bent(nodes)),
+            What::Body(body, along) => {
+                doubts.extend(tilted(body));
+                doubts.extend(not_ahead(body, *along));
+            }
+            What::Forces(_) | What::Path(_) => {}
         }
         doubts.extend(self.off_plane());
         doubts
@@ -167,13 +181,23 @@ impl<'a> Chosen<'a> {
                     part.name, part.name
                 ))
             }
-            What::Node(node) => Some(format!(
-                "{} is read, the first of {}, without a yaw angle; name two nodes on the axis of the car, \
-                 the rear one first, e.g. map sheet=node 101 to node 102",
-                node.name,
-                results.histories.len()
-            )),
-            What::Axis(_) => None,
+            What::Path(of) => {
+                let remedy = match of.kind {
+                    Kind::RigidBody => format!(
+                        "which way the car heads at the start is not in the file; say it, e.g. map sheet={}",
+                        named_along(of, Along::X)
+                    ),
+                    _ => "name two nodes on the axis of the car, the rear one first, e.g. map sheet=node 101 to \
+                          node 102"
+                        .to_owned(),
+                };
+                let n = results.histories.len();
+                Some(format!(
+                    "{} is read, the first of {n}, without a yaw angle; {remedy}",
+                    of.name
+                ))
+            }
+            What::Axis(_) | What::Body(..) => None,
         }
     }
 
@@ -246,8 +270,9 @@ impl<'a> Chosen<'a> {
     pub(super) fn table(&self, deck: Option<DeckUnits>) -> String {
         let columns = match &self.what {
             What::Forces(parts) => sum(parts),
-            What::Node(node) => path_of(node),
+            What::Path(of) => path_of(of),
             What::Axis(nodes) => motion_of(nodes),
+            What::Body(body, along) => motion_of_body(body, *along),
         };
         let times = self.parts().first().map_or(&[][..], |part| part.time.as_slice());
         let per_unit = |dimension| deck.map_or(1.0, |deck| deck.si_per_unit(dimension));
@@ -270,14 +295,41 @@ impl<'a> Chosen<'a> {
     }
 }
 
+/// What is said of the motion of a rigid body.
+const OF_BODY: &str = "; the centre of gravity of the rigid body stands for that of the car";
+
 fn single(history: &History) -> What<'_> {
-    match history.kind {
-        Kind::Node => What::Node(history),
-        _ => What::Forces(vec![history]),
+    match history.kind.is_motion() {
+        true => What::Path(history),
+        false => What::Forces(vec![history]),
     }
 }
 
-/// The contact of the largest impulse, or else another force, or else the first node.
+/// A rigid body with each heading that can be said.
+fn bodies(results: &Results) -> impl Iterator<Item = (&History, Along)> {
+    let bodies = results.histories.iter().filter(|history| history.kind == Kind::RigidBody);
+    bodies.flat_map(|body| Along::ALL.map(|along| (body, along)))
+}
+
+fn named_along(body: &History, along: Along) -> String {
+    format!("{} {}", body.name, along.name())
+}
+
+/// What a person can choose, in the order of its numbers.
+fn listed(results: &Results) -> Vec<String> {
+    let bodies = bodies(results).map(|(body, along)| named_along(body, along));
+    results.labels().into_iter().chain(bodies).take(MAX_LISTED).collect()
+}
+
+/// What stands at a place in the list.
+fn numbered(results: &Results, at: usize) -> Option<What<'_>> {
+    match at.checked_sub(results.histories.len()) {
+        None => results.histories.get(at).map(single),
+        Some(at) => bodies(results).nth(at).map(|(body, along)| What::Body(body, along)),
+    }
+}
+
+/// The contact of the largest impulse, or else another force, or else the first motion.
 fn default(results: &Results) -> Option<What<'_>> {
     let of_kind = |kinds: &[Kind]| {
         let mut found: Option<(&History, f64)> = None;
@@ -306,19 +358,22 @@ fn named<'a>(results: &'a Results, text: &str) -> Option<What<'a>> {
     if let Some(history) = find(text) {
         return Some(single(history));
     }
+    let is_named = |(body, along): &(&History, Along)| {
+        named_along(body, *along).eq_ignore_ascii_case(text.trim())
+    };
+    if let Some((body, along)) = bodies(results).find(is_named) {
+        return Some(What::Body(body, along));
+    }
     if let Some((rear, front)) = text.split_once(" to ") {
         let nodes = [find(rear)?, find(front)?];
-        let are_nodes = nodes.iter().all(|node| node.kind == Kind::Node);
+        let are_nodes = nodes.iter().all(|node| node.kind.is_motion());
         return (are_nodes && nodes[0].name != nodes[1].name).then_some(What::Axis(nodes));
     }
     let parts: Vec<&History> = text.split('+').map(find).collect::<Option<_>>()?;
     let first = parts.first()?;
-    let are_forces = parts.iter().all(|part| part.kind != Kind::Node && part.time == first.time);
+    let are_forces = parts.iter().all(|part| !part.kind.is_motion() && part.time == first.time);
     are_forces.then_some(What::Forces(parts))
 }
-
-/// A column of the table.
-type Shown = (&'static str, Dimension, Vec<f64>);
 
 /// The sum of forces at the same instants. A column that one of them lacks is left out.
 fn sum(parts: &[&History]) -> Vec<Shown> {
@@ -338,63 +393,4 @@ fn sum(parts: &[&History]) -> Vec<Shown> {
         columns.push((column.name, column.dimension, values));
     }
     columns
-}
-
-/// The path of a node.
-fn path_of(node: &History) -> Vec<Shown> {
-    let of = |name| node.values(name).to_vec();
-    let speeds = node.values("vx").iter().zip(node.values("vy"));
-    let speeds = speeds.map(|(x, y)| x.hypot(*y)).collect();
-    vec![
-        ("x", Dimension::Length, of("x")),
-        ("y", Dimension::Length, of("y")),
-        ("speed", Dimension::Velocity, speeds),
-    ]
-}
-
-/// The motion of the first node, with the heading and the yaw rate of the line to the second.
-///
-/// ```text
-/// ψ = atan2(d_y, d_x),  r = (d_x ḋ_y − d_y ḋ_x) / |d|²,  d from the first node to the second
-/// ```
-fn motion_of([rear, front]: &[&History; 2]) -> Vec<Shown> {
-    let apart = |name: &str| -> Vec<f64> {
-        front.values(name).iter().zip(rear.values(name)).map(|(a, b)| a - b).collect()
-    };
-    let [dx, dy, ux, uy] = ["x", "y", "vx", "vy"].map(apart);
-    let headings: Vec<f64> = dx.iter().zip(&dy).map(|(x, y)| y.atan2(*x)).collect();
-    let rates = dx.iter().zip(&dy).zip(ux.iter().zip(&uy));
-    let rates = rates.map(|((x, y), (u, v))| (x * v - y * u) / (x * x + y * y)).collect();
-    let velocities = rear.values("vx").iter().zip(rear.values("vy")).zip(&headings);
-    let (along, across) = velocities
-        .map(|((x, y), heading)| {
-            let (sin, cos) = heading.sin_cos();
-            (cos * x + sin * y, cos * y - sin * x)
-        })
-        .unzip();
-    vec![
-        ("x", Dimension::Length, rear.values("x").to_vec()),
-        ("y", Dimension::Length, rear.values("y").to_vec()),
-        ("yaw", Dimension::Angle, counted_turns_rad(headings)),
-        ("vx", Dimension::Velocity, along),
-        ("vy", Dimension::Velocity, across),
-        ("yaw_rate", Dimension::AngularVelocity, rates),
-    ]
-}
-
-/// What is said of two nodes whose distance changes.
-fn bent([rear, front]: &[&History; 2]) -> Option<String> {
-    let apart = |name: &str| front.values(name).iter().zip(rear.values(name)).map(|(a, b)| a - b);
-    let distances: Vec<f64> = apart("x").zip(apart("y")).map(|(x, y)| x.hypot(y)).collect();
-    let first = *distances.first()?;
-    let change = distances.iter().map(|distance| (distance - first).abs()).fold(0.0, f64::max);
-    (change > RIGID * first).then(|| {
-        format!(
-            "the distance of {} and {} in the plane changes by {} %: they are no rigid axis of the car, so \
-             its yaw angle may be wrong",
-            rear.name,
-            front.name,
-            shown(100.0 * change / first)
-        )
-    })
 }

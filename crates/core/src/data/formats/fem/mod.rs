@@ -9,10 +9,13 @@ mod choice;
 mod deck;
 mod legend;
 mod lsda;
+mod matsum;
 mod momenta;
+mod motion;
 mod nodout;
 mod parts;
 mod radioss;
+mod rbdout;
 mod rcforc;
 mod results;
 mod secforc;
@@ -22,6 +25,7 @@ mod tokens;
 
 use std::path::Path;
 
+use crate::data::foreign::other;
 use crate::data::formats::{Converted, Said};
 use crate::data::{DataError, ReadSettings, open_file};
 
@@ -29,7 +33,7 @@ use choice::Chosen;
 pub use deck::DeckUnits;
 pub(in crate::data) use deck::OpenUnits;
 pub use parts::parts_beside;
-use results::Results;
+use results::{Kind, Results};
 pub use start::ModelStart;
 use tokens::damaged_line;
 
@@ -37,6 +41,9 @@ use tokens::damaged_line;
 /// that is examined, bytes.
 const EXAMINED_LINES: usize = 2000;
 const EXAMINED_BYTES: usize = 400;
+
+/// What to do with a file of momenta.
+const WITH_FORCES: &str = "open the rcforc beside it, with which its momenta are read";
 
 /// First bytes by which a binary file is recognised.
 const HEAD_BYTES: u64 = 92;
@@ -71,18 +78,31 @@ pub(super) fn from_text(
     text: &str,
     settings: &ReadSettings,
 ) -> Result<Option<Converted>, DataError> {
-    let mut lines = text.lines().take(EXAMINED_LINES).filter(|line| line.len() <= EXAMINED_BYTES);
-    let reader = lines.find_map(|line| -> Option<Reader> {
+    let reader = examined_lines(text).find_map(|line| -> Option<Reader> {
         match () {
             () if rcforc::is_row(line) => Some(rcforc::read),
             () if nodout::is_title(line) => Some(nodout::read),
             () if secforc::is_title(line) => Some(secforc::read),
+            () if rbdout::is_title(line) => Some(rbdout::read),
             () => None,
         }
     });
-    let Some(read) = reader else { return Ok(None) };
-    let results = read(text).map_err(|at| damaged_line(path, at))?;
+    let Some(read) = reader else {
+        return match examined_lines(text).any(matsum::is_part) {
+            true => Err(other(path, "an LS-DYNA matsum file", WITH_FORCES)),
+            false => Ok(None),
+        };
+    };
+    let mut results = read(text).map_err(|at| damaged_line(path, at))?;
+    if results.histories.iter().any(|history| history.kind == Kind::Contact) {
+        matsum::add_beside(path, text, &mut results);
+    }
     converted(path, &results, settings).map(Some)
+}
+
+/// The lines of a text in which the marks of a solver are looked for.
+fn examined_lines(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().take(EXAMINED_LINES).filter(|line| line.len() <= EXAMINED_BYTES)
 }
 
 /// A reader of text. What is wrong is said with its line.

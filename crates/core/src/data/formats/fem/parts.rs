@@ -6,6 +6,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use crate::data::formats::fem::lsda::is_lsda;
+use crate::data::formats::fem::{EXAMINED_BYTES, EXAMINED_LINES, examined_lines, matsum, rcforc};
 use crate::data::{DataError, Place, list_folder, open_file};
 
 /// Beginning of the names of which several processes write one file each.
@@ -78,7 +79,8 @@ pub(super) fn parts(path: &Path) -> Result<Vec<PathBuf>, DataError> {
     }
 }
 
-/// The files that are read together with a file of results, itself among them; none for any other file.
+/// The files that are read together with a file of results, itself among them: all parts of a `binout`, an
+/// `rcforc` and its `matsum`; none for any other file.
 pub fn parts_beside(path: &Path) -> Vec<PathBuf> {
     let head = open_file(path, u64::MAX).ok().and_then(|(file, _)| {
         let mut head = Vec::new();
@@ -87,8 +89,18 @@ pub fn parts_beside(path: &Path) -> Vec<PathBuf> {
     });
     match head.is_some_and(|head| is_lsda(&head)) {
         true => parts(path).unwrap_or_default(),
-        false => Vec::new(),
+        false => forces_with_momenta(path).unwrap_or_default(),
     }
+}
+
+/// An `rcforc` with the `matsum` beside it; `None` for any other file.
+fn forces_with_momenta(path: &Path) -> Option<Vec<PathBuf>> {
+    let momenta = matsum::beside(path)?;
+    let (file, _) = open_file(path, u64::MAX).ok()?;
+    let mut head = Vec::new();
+    file.take((EXAMINED_LINES * EXAMINED_BYTES) as u64).read_to_end(&mut head).ok()?;
+    let is_forces = examined_lines(&String::from_utf8_lossy(&head)).any(rcforc::is_row);
+    is_forces.then(|| vec![path.to_owned(), momenta])
 }
 
 #[cfg(test)]

@@ -27,13 +27,23 @@ pub(super) struct Results {
 pub(super) enum Kind {
     Contact,
     Wall,
+    /// The force on a rigid body.
     Body,
     Section,
     Spring,
     Node,
+    /// The motion of a rigid body.
+    RigidBody,
 }
 
-/// A force or the motion of a node over time.
+impl Kind {
+    /// Whether it is a motion and not a force.
+    pub(super) fn is_motion(self) -> bool {
+        matches!(self, Self::Node | Self::RigidBody)
+    }
+}
+
+/// A force or a motion over time.
 #[derive(Debug, Clone)]
 pub(super) struct History {
     /// Its name in the text of a map, such as `contact 3 master`.
@@ -57,7 +67,7 @@ pub(super) struct Column {
     pub values: Vec<f64>,
 }
 
-/// Names and dimensions of the columns of a force and of a node.
+/// Names and dimensions of the columns of a force, of a node and of a rigid body.
 pub(super) const FORCE: [(&str, Dimension); 3] =
     [("fx", Dimension::Force), ("fy", Dimension::Force), ("fz", Dimension::Force)];
 pub(super) const NODE: [(&str, Dimension); 4] = [
@@ -66,6 +76,22 @@ pub(super) const NODE: [(&str, Dimension); 4] = [
     ("vx", Dimension::Velocity),
     ("vy", Dimension::Velocity),
 ];
+
+pub(super) const BODY: [(&str, Dimension); 9] = [
+    ("x", Dimension::Length),
+    ("y", Dimension::Length),
+    ("vx", Dimension::Velocity),
+    ("vy", Dimension::Velocity),
+    ("ax", Dimension::Acceleration),
+    ("ay", Dimension::Acceleration),
+    ("yaw_rate", Dimension::AngularVelocity),
+    ROTATION_ABOUT_Z,
+    ROTATION,
+];
+
+/// Rotation of a rigid body about z, and about any axis since the first instant.
+pub(super) const ROTATION_ABOUT_Z: (&str, Dimension) = ("rotation about z", Dimension::Angle);
+pub(super) const ROTATION: (&str, Dimension) = ("rotation", Dimension::Angle);
 
 /// The moment that a contact or section has about a point that is not the centre of gravity of a car.
 pub(super) const MOMENT: (&str, Dimension) = ("moment about the origin, z", Dimension::Moment);
@@ -108,12 +134,12 @@ impl History {
         self.columns.iter().find(|column| column.name == name).map_or(&[], |of| &of.values)
     }
 
-    /// The force along x and y; `None` for a node.
+    /// The force along x and y; `None` for a motion.
     pub(super) fn force(&self) -> Option<ForceHistory> {
         let sign = if self.is_reversed { -1.0 } else { 1.0 };
         let signed =
             |name| self.values(name).iter().map(|value| sign * value).collect::<Vec<f64>>();
-        (self.kind != Kind::Node).then(|| ForceHistory {
+        (!self.kind.is_motion()).then(|| ForceHistory {
             axes: ForceAxes::World,
             sampling: Sampling::Instant,
             time_s: self.time.to_vec(),
@@ -123,7 +149,7 @@ impl History {
         })
     }
 
-    /// The magnitude of the impulse in the plane; 0 for a node and where a number is not finite.
+    /// The magnitude of the impulse in the plane; 0 for a motion and where a number is not finite.
     pub(super) fn impulse(&self) -> f64 {
         let [x, y] = self.force().map_or([0.0; 2], |force| force.impulse_n_s());
         Some(x.hypot(y)).filter(|size| size.is_finite()).unwrap_or(0.0)

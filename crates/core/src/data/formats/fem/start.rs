@@ -13,7 +13,7 @@ pub struct ModelStart {
     /// That of the parts on which the force acts, by what their momenta gain, or of all parts where they begin
     /// alike; `None` where this does not tell which parts these are.
     pub of_force_m_s: Option<[f64; 2]>,
-    /// Those that parts begin with, or nodes in a file without parts.
+    /// Those that parts begin with, or nodes and rigid bodies in a file without parts.
     pub all_m_s: Vec<[f64; 2]>,
 }
 
@@ -32,7 +32,7 @@ impl ModelStart {
             _ => None,
         };
         let momenta = results.momenta.as_ref();
-        let mut all = momenta.map_or_else(|| of_nodes(results), Momenta::starts);
+        let mut all = momenta.map_or_else(|| of_motions(results), Momenta::starts);
         let n_starts = all.len();
         all.retain(|velocity| velocity.iter().all(|value| value.is_finite()));
         let groups = by_velocity(&all);
@@ -69,9 +69,9 @@ impl ModelStart {
     }
 }
 
-/// The first velocities of all nodes.
-fn of_nodes(results: &Results) -> Vec<[f64; 2]> {
-    let nodes = results.histories.iter().filter(|history| history.kind == Kind::Node);
+/// The first velocities of all nodes and rigid bodies.
+fn of_motions(results: &Results) -> Vec<[f64; 2]> {
+    let nodes = results.histories.iter().filter(|history| history.kind.is_motion());
     let first = |node: &History| Some([*node.values("vx").first()?, *node.values("vy").first()?]);
     nodes.filter_map(first).collect()
 }
