@@ -183,7 +183,8 @@ fn the_shipped_model_keeps_its_word() {
         assert_eq!(metrics.violations, 0);
         let coverage = metrics.coverage.as_ref().unwrap();
         let shares = [coverage.path_90, coverage.end_90];
-        assert!(shares.iter().all(|share| (0.78..=0.99).contains(share)), "{data}: {coverage:?}");
+        // All of 25 ends are held by regions that hold 0.87 or more of them.
+        assert!(shares.iter().all(|share| (0.78..=1.0).contains(share)), "{data}: {coverage:?}");
         inside.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share / 2.0);
     }
     assert!(inside.iter().all(|share| (0.85..=0.95).contains(share)), "{inside:?}");
