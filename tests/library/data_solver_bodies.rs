@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use impactlab_core::data::{Channel, FileKind, read_any_series};
 use tempfile::TempDir;
 
-use crate::data_solvers::{
+use crate::solver_files::{
     DECK, FORCE_KN, LSDA, TIME_MS, assert_close, binout_forces, doubts, e, file, floats, fx, ids,
     map, read, record,
 };

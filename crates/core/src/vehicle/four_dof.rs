@@ -1,6 +1,7 @@
 //! The equations of motion of the 4DOF vehicle: longitudinal, lateral, yaw and roll motion under
 //! tire and collision forces. They are written only here and are generic over the scalar type, so
-//! that the same lines serve for simulation and for exact Jacobians.
+//! that the same lines serve for simulation and for exact Jacobians; the file is long because they
+//! stand together.
 //!
 //! ```text
 //! m (v̇_x − v_y r)   = ΣF_x,tire + F_x,coll + m g_x

@@ -12,7 +12,7 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::io::{self, Cursor, Read, Write};
+use std::io::{Cursor, Read, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -24,11 +24,13 @@ use crate::atlas::axis::check_all;
 use crate::atlas::cell::Moments;
 use crate::atlas::make::of_count;
 use crate::atlas::model::{MAX_CELLS, n_cells_of};
-use crate::atlas::{Atlas, AtlasError, Axis, Cell, HistogramKind, OutcomeSensitivity, npy};
+use crate::atlas::{
+    Atlas, AtlasError, AtlasFileError, Axis, Cell, HistogramKind, OutcomeSensitivity, npy,
+};
 use impactlab_core::data::{Existing, read_bytes, write_atomically};
 
 /// Version of the format.
-const FORMAT: u32 = 1;
+pub(super) const FORMAT: u32 = 1;
 
 /// Most bytes of a file and of its head.
 const MAX_FILE_BYTES: u64 = 64 << 20;
@@ -38,91 +40,6 @@ const MAX_HEAD_BYTES: u64 = 1 << 20;
 pub(super) const MAX_FILE_CELLS: usize = 40_000;
 
 const HEAD: &str = "atlas.json";
-
-/// Why a file is no atlas.
-#[derive(Debug, thiserror::Error)]
-pub enum AtlasFileError {
-    /// It is no archive, or a part of it is damaged or missing.
-    #[error("{name}: cannot be read from the archive")]
-    Zip {
-        /// The part.
-        name: String,
-        /// What is wrong.
-        source: zip::result::ZipError,
-    },
-    /// A part of it cannot be read or written.
-    #[error("{name}: cannot be read or written")]
-    Io {
-        /// The part.
-        name: String,
-        /// What is wrong.
-        source: io::Error,
-    },
-    /// The head is none.
-    #[error("its head is none")]
-    Head(#[from] serde_json::Error),
-    /// It is of another version.
-    #[error("it has format {got}, expected {FORMAT}; another version of the program wrote it")]
-    Format {
-        /// Its version.
-        got: u32,
-    },
-    /// A part is larger than it can be.
-    #[error("{name} has more than {limit} bytes")]
-    TooLarge {
-        /// The part.
-        name: String,
-        /// The limit.
-        limit: u64,
-    },
-    /// It says more cells than its axes have, or than are read.
-    #[error("it has {got} cells, expected 1 to {limit}")]
-    Cells {
-        /// As it says.
-        got: usize,
-        /// The limit.
-        limit: u64,
-    },
-    /// Its axes are none.
-    #[error("its axes are none")]
-    Axes(#[source] Box<AtlasError>),
-    /// Its outcomes or histograms are not those of this program.
-    #[error("its {what} are not those of this program")]
-    Other {
-        /// What differs.
-        what: &'static str,
-    },
-    /// A column is of another type or shape.
-    #[error("{name} is no array of the type and shape that it should have")]
-    NotThisArray {
-        /// The column.
-        name: String,
-    },
-    /// A column has another length.
-    #[error("{name} has {got} values, expected {expected}")]
-    Length {
-        /// The column.
-        name: String,
-        /// Its length.
-        got: usize,
-        /// That of the others.
-        expected: usize,
-    },
-    /// A number is not finite.
-    #[error("{name}: the value of row {cell} is not finite")]
-    NotFinite {
-        /// The column.
-        name: String,
-        /// The row of the table.
-        cell: usize,
-    },
-    /// Counts that contradict each other, or cells that do not rise.
-    #[error("row {cell} of the table of cells contradicts itself or the rows before")]
-    Contradiction {
-        /// The row of the table.
-        cell: usize,
-    },
-}
 
 /// The head of the file.
 #[derive(Debug, Serialize, Deserialize)]
@@ -428,96 +345,5 @@ fn is_consistent(cell: &Cell) -> bool {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::atlas::make::test_rows::{axes, rows};
-
-    fn atlas() -> Atlas {
-        Atlas::from_rows(&rows(3000), axes(7)).unwrap()
-    }
-
-    #[test]
-    fn what_is_written_is_read_back_and_has_the_same_bytes() {
-        let atlas = atlas();
-        let bytes = atlas.to_bytes().unwrap();
-        let read = Atlas::from_bytes(&bytes).unwrap();
-        assert_eq!(read, atlas);
-        assert_eq!(read.to_bytes().unwrap(), bytes);
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.atlas");
-        atlas.write(&path, Existing::Refuse).unwrap();
-        assert_eq!(Atlas::read(&path).unwrap(), atlas);
-        assert!(atlas.write(&path, Existing::Refuse).is_err());
-    }
-
-    /// The same file with one part replaced, or without it.
-    fn with_part(bytes: &[u8], name: &str, content: Option<Vec<u8>>) -> Vec<u8> {
-        let mut old = ZipArchive::new(Cursor::new(bytes)).unwrap();
-        let mut new = ZipWriter::new(Cursor::new(Vec::new()));
-        for i in 0..old.len() {
-            let mut entry = old.by_index(i).unwrap();
-            let entry_name = entry.name().unwrap().into_owned();
-            let mut part = Vec::new();
-            entry.read_to_end(&mut part).unwrap();
-            if entry_name == name {
-                let Some(content) = &content else { continue };
-                part.clone_from(content);
-            }
-            new.start_file(entry_name.as_str(), SimpleFileOptions::default()).unwrap();
-            new.write_all(&part).unwrap();
-        }
-        new.finish().unwrap().into_inner()
-    }
-
-    #[test]
-    fn a_hostile_file_is_refused() {
-        let atlas = atlas();
-        let (n, bytes) = (atlas.n_cells(), atlas.to_bytes().unwrap());
-        let refused = |bytes: &[u8]| Atlas::from_bytes(bytes).unwrap_err();
-        assert!(matches!(refused(b""), AtlasFileError::Zip { .. }));
-        assert!(matches!(refused(&bytes[..bytes.len() / 2]), AtlasFileError::Zip { .. }));
-        let missing = with_part(&bytes, "rows.npy", None);
-        assert!(matches!(refused(&missing), AtlasFileError::Zip { .. }));
-        let part = |name, content| with_part(&bytes, name, Some(content));
-        // A part that unpacks to far more than it can have.
-        let bomb = part("rows.npy", vec![0; 50 << 20]);
-        assert!(bomb.len() < 1 << 20, "{} bytes", bomb.len());
-        assert!(matches!(refused(&bomb), AtlasFileError::TooLarge { .. }));
-        let short = part("rows.npy", npy::of_counts(&[1], [1, 1]));
-        assert!(matches!(refused(&short), AtlasFileError::NotThisArray { .. }));
-        let falling: Vec<u32> = (0..n as u32).rev().collect();
-        let falling = part("cell.npy", npy::of_counts(&falling, [n, 1]));
-        assert!(matches!(refused(&falling), AtlasFileError::Contradiction { .. }));
-        let beyond: Vec<u32> = (0..n as u32).map(|i| i + 1000).collect();
-        let beyond = part("cell.npy", npy::of_counts(&beyond, [n, 1]));
-        assert!(matches!(refused(&beyond), AtlasFileError::Contradiction { .. }));
-        let more = part("inside.npy", npy::of_counts(&vec![70_000; n], [n, 1]));
-        assert!(matches!(refused(&more), AtlasFileError::Contradiction { .. }));
-        let [_, _, mean, m2] = names(Outcome::TravelM);
-        let infinite = part(&mean, npy::of_numbers(&vec![f32::INFINITY; n]));
-        assert!(matches!(refused(&infinite), AtlasFileError::NotFinite { .. }));
-        let negative = part(&m2, npy::of_numbers(&vec![-1.0; n]));
-        assert!(matches!(refused(&negative), AtlasFileError::Contradiction { .. }));
-    }
-
-    #[test]
-    fn a_head_that_asks_for_too_much_is_refused() {
-        let bytes = atlas().to_bytes().unwrap();
-        let with = |change: &dyn Fn(&mut serde_json::Value)| {
-            let mut head = serde_json::to_value(atlas().head()).unwrap();
-            change(&mut head);
-            let head = serde_json::to_vec(&head).unwrap();
-            Atlas::from_bytes(&with_part(&bytes, HEAD, Some(head))).unwrap_err()
-        };
-        let cells = with(&|head| head["n_cells"] = 4_000_000_000_u64.into());
-        assert!(matches!(cells, AtlasFileError::Cells { .. }), "{cells}");
-        let format = with(&|head| head["format"] = 9.into());
-        assert!(matches!(format, AtlasFileError::Format { got: 9 }), "{format}");
-        let rows = with(&|head| head["n_rows"] = 1.into());
-        assert!(matches!(rows, AtlasFileError::Contradiction { .. }), "{rows}");
-        let edges = with(&|head| head["axes"][0]["edges"] = serde_json::json!([1.0, 1.0]));
-        assert!(matches!(edges, AtlasFileError::Axes(_)), "{edges}");
-        let key = with(&|head| head["more"] = 1.into());
-        assert!(matches!(key, AtlasFileError::Head(_)), "{key}");
-    }
-}
+#[path = "file_tests.rs"]
+mod tests;

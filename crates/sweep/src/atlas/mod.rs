@@ -29,6 +29,8 @@ mod npy;
 
 mod file;
 
+mod file_error;
+
 mod sensitivity;
 
 mod case;
@@ -37,7 +39,7 @@ pub use axis::{Axis, AxisError};
 pub use case::{CasePlace, place_of_case};
 pub use cell::{Cell, Corridor, MIN_ROWS, Measure, Quantile, SliceCell};
 pub use error::AtlasError;
-pub use file::AtlasFileError;
+pub use file_error::AtlasFileError;
 pub use histogram::HistogramKind;
 pub use make::AtlasBuilder;
 pub use model::{Atlas, Slice};

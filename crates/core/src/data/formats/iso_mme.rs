@@ -18,12 +18,11 @@
 //! characters of the place, the dimension (`AC`, `FO`, `VE` …), the axis and the filter class; places and axes
 //! differ from laboratory to laboratory, so that columns are named by their codes and mapped. Values are read as
 //! recorded; a channel of another time than the first one is a part of its own.
-//!
-//! The file is long because a test is read whole: its channels, their times and what is in doubt of each.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::data::formats::iso_mme_channel::{MmeChannel, has_code, pair, plain};
 use crate::data::formats::nhtsa_curves::OTHER_AXES;
 use crate::data::formats::{Converted, Said, number_text};
 use crate::data::spelling::unit;
@@ -38,8 +37,6 @@ const MAX_TEST_BYTES: u64 = 128 << 20;
 const MAX_CHANNELS: usize = 999;
 /// Different times of the channels of a test.
 const MAX_TIMES: usize = 64;
-/// Lines of keys above the values of a channel.
-const MAX_KEYS: usize = 400;
 /// Remarks on channels that are shown.
 const MAX_REMARKS: usize = 6;
 /// Difference of two instants that are the same, s.
@@ -60,29 +57,12 @@ const KEYS: [&str; 8] = [
 const OTHER_KEYS: [&str; 4] =
     ["data format", "reference channel", "channel frequency class", "sampling interval"];
 
-/// A channel.
-struct MmeChannel {
-    path: PathBuf,
-    /// Its keys in small letters, with their values.
-    keys: BTreeMap<String, String>,
-    /// Its values; `None` for one that is not there.
-    values: Vec<Option<f64>>,
-}
-
 /// Channels over one time.
 struct Group {
     name: String,
     time_s: Vec<f64>,
     /// Indices of the channels.
     channels: Vec<usize>,
-}
-
-/// The key in small letters and the value of a line.
-fn pair(line: &str) -> Option<(String, &str)> {
-    let (key, value) = line.split_once(':')?;
-    let key = key.trim().to_lowercase();
-    let starts = key.chars().next().is_some_and(char::is_alphabetic);
-    starts.then(|| (key, value.trim()))
 }
 
 /// Whether a text is a file of a test.
@@ -156,11 +136,6 @@ pub(super) fn as_table(
     Ok(Some(Converted { text, said }))
 }
 
-/// Whether a text is that of a channel: it has a code.
-fn has_code(text: &str) -> bool {
-    text.lines().take(MAX_KEYS).filter_map(pair).any(|(key, _)| key == "channel code")
-}
-
 /// Whether a file stands for a whole test, and not for one channel.
 fn is_of_test(path: &Path, text: &str) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
@@ -224,100 +199,6 @@ fn channel_files(entries: &[PathBuf], stem: &str) -> BTreeMap<u32, PathBuf> {
         (is_number && of == stem).then(|| Some((ending.parse().ok()?, path.clone()))).flatten()
     };
     entries.iter().filter_map(numbered).take(MAX_CHANNELS).collect()
-}
-
-impl MmeChannel {
-    /// # Errors
-    /// [`DataError::Cell`] at the first line that is neither a key nor a value.
-    fn parse(path: PathBuf, text: &str) -> Result<Self, DataError> {
-        let (mut keys, mut values) = (BTreeMap::new(), Vec::new());
-        for (line, content) in (1..).zip(text.lines()) {
-            let content = content.trim();
-            let is_head = values.is_empty() && keys.len() < MAX_KEYS;
-            match pair(content) {
-                _ if content.is_empty() => {}
-                Some((key, value)) if is_head => {
-                    keys.entry(key).or_insert_with(|| value.to_owned());
-                }
-                _ => values.push(sample(&path, line, content)?),
-            }
-        }
-        Ok(Self { path, keys, values })
-    }
-
-    fn value(&self, key: &str) -> Option<&str> {
-        let value = self.keys.get(key).map(String::as_str)?;
-        (!value.is_empty() && !value.eq_ignore_ascii_case("novalue")).then_some(value)
-    }
-
-    fn number(&self, key: &str) -> Option<f64> {
-        let number: f64 = self.value(key)?.replace(',', ".").parse().ok()?;
-        number.is_finite().then_some(number)
-    }
-
-    fn code(&self) -> String {
-        let ending = self.path.extension().unwrap_or_default().to_string_lossy();
-        plain(self.value("channel code").unwrap_or(&ending))
-    }
-
-    /// What is in doubt of its samples and their times, in words.
-    fn remark(&self) -> Option<String> {
-        let (code, n) = (self.code(), self.values.len());
-        match self.number("number of samples") {
-            Some(stated) if stated != n as f64 => {
-                Some(format!("{code} has {n} samples and says {stated}; is it cut?"))
-            }
-            _ if self.is_explicit() || self.number("time of first sample").is_some() => None,
-            _ => Some(format!(
-                "{code} does not say the time of its first sample; it is taken as 0 s"
-            )),
-        }
-    }
-
-    /// Whether its times are those of another channel.
-    fn is_explicit(&self) -> bool {
-        let of = self.value("reference channel");
-        of.is_some_and(|of| of.eq_ignore_ascii_case("explicit"))
-    }
-
-    /// Whether it is measured along or about an axis that points elsewhere than here: the fifteenth sign of a code.
-    fn has_other_axis(&self) -> bool {
-        self.code()
-            .chars()
-            .nth(14)
-            .is_some_and(|axis| matches!(axis.to_ascii_uppercase(), 'Y' | 'Z'))
-    }
-
-    /// Its instants by its own keys, s.
-    fn implicit_s(&self) -> Option<Vec<f64>> {
-        let interval_s = self.number("sampling interval").filter(|interval| *interval > 0.0)?;
-        let first_s = self.number("time of first sample").unwrap_or(0.0);
-        Some((0..self.values.len()).map(|i| first_s + i as f64 * interval_s).collect())
-    }
-
-    /// What keeps it from being read.
-    fn status(&self) -> Option<String> {
-        let status = self.value("data status")?;
-        let is_good = matches!(status.to_lowercase().as_str(), "ok" | "good" | "valid");
-        (!is_good).then(|| format!("{}: data status {}", self.code(), plain(status)))
-    }
-}
-
-/// A value, or nothing where none was recorded.
-fn sample(path: &Path, line: u64, text: &str) -> Result<Option<f64>, DataError> {
-    if text.eq_ignore_ascii_case("novalue") {
-        return Ok(None);
-    }
-    let number: Option<f64> = text.replace(',', ".").parse().ok();
-    let number = number.filter(|number| number.is_finite());
-    number.map(Some).ok_or_else(|| DataError::Cell {
-        path: path.to_owned(),
-        line,
-        column: 1,
-        name: "value".to_owned(),
-        text: text.to_owned(),
-        expected: "a number or NOVALUE".into(),
-    })
 }
 
 /// The channels by their times, the largest group first, and what is said of those that are left out.
@@ -417,125 +298,6 @@ fn some(names: &[String]) -> String {
     }
 }
 
-/// A text without what would end a cell or a line, cut to a length that a header may have.
-fn plain(text: &str) -> String {
-    let plain = text.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c });
-    plain.take(60).collect()
-}
-
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::data::{Channel, Table, read_any_series};
-
-    fn channel(pairs: &[(&str, &str)], values: &[&str]) -> String {
-        let head: String =
-            pairs.iter().map(|(key, value)| format!("{key:<28}:{value}\n")).collect();
-        head + &values.join("\n") + "\n"
-    }
-
-    /// A test with a time of its own, a force over it and an acceleration with an implicit time.
-    fn write(folder: &Path, newline: &str) -> PathBuf {
-        let inner = folder.join("CHANNEL");
-        std::fs::create_dir(&inner).unwrap();
-        let put = |path: PathBuf, text: String| {
-            let bytes: Vec<u8> = text.replace('\n', newline).chars().map(|c| c as u8).collect();
-            std::fs::write(path, bytes).unwrap();
-        };
-        let mme = channel(&[("Laboratory name", "Pr\u{fc}fer"), ("Data format", "ISO-MME")], &[]);
-        put(folder.join("t.mme"), mme);
-        let time =
-            [("Channel code", "11TIRS000000TIRP"), ("Name of the channel", "time"), ("Unit", "ms")];
-        put(inner.join("T.001"), channel(&time, &["0", "1", "2"]));
-        let force = [
-            ("CHANNEL CODE", "11BARR000000FOXP"),
-            ("Name of the channel", "Kraft"),
-            ("Reference channel", "explicit"),
-            ("Reference channel name", "11TIRS000000TIRP"),
-            ("Unit", "kN"),
-            ("Data status", "ok"),
-        ];
-        put(inner.join("t.002"), channel(&force, &["-1", "-2", "-1"]));
-        let other = [
-            ("Channel code", "11SEAT000000ACXP"),
-            ("Reference channel", "implicit"),
-            ("Time of first sample", "-0.001"),
-            ("Sampling interval", "0.0005"),
-            ("Unit", "g"),
-        ];
-        put(inner.join("t.003"), channel(&other, &["0", "NOVALUE", "3", "4"]));
-        folder.join("t.mme")
-    }
-
-    #[test]
-    fn explicit_and_implicit_times_are_parts() {
-        for newline in ["\n", "\r\n"] {
-            let folder = tempfile::tempdir().unwrap();
-            let path = write(folder.path(), newline);
-            let table = Table::read(&path).unwrap();
-            assert_eq!(table.header(), ["time [s]", "11BARR000000FOXP Kraft [kN]"]);
-            assert_eq!(table.sheet().unwrap().all.len(), 2);
-            let map = "fx_body=2:kN,fy_body=none".parse().unwrap();
-            let loaded = read_any_series(&path, Some(&map)).unwrap();
-            assert_eq!(loaded.series.time_s(), [0.0, 0.001, 0.002]);
-            assert_eq!(loaded.series.require(Channel::FxBody).unwrap(), [-1e3, -2e3, -1e3]);
-            let beside = crate::data::parts_beside(&path);
-            assert_eq!(beside.len(), 4, "{beside:?}");
-            assert!(beside[0] == path && beside[1].ends_with("CHANNEL/T.001"), "{beside:?}");
-            // The other part has no channel with all of its samples.
-            let alone = folder.path().join("CHANNEL/t.002");
-            assert!(Table::read(&alone).is_err());
-        }
-    }
-
-    #[test]
-    fn a_cut_channel_and_another_axis_are_said() {
-        let keys = [
-            ("Channel code", "11SEAT000000ACYP"),
-            ("Time of first sample", "-0.1"),
-            ("Sampling interval", "0.1"),
-            ("Number of samples", "3"),
-        ];
-        let doubts = |values: &[&str]| {
-            let text = channel(&keys, values);
-            let settings = ReadSettings::default();
-            as_table(Path::new("a.001"), &text, &settings).unwrap().unwrap().said.doubts
-        };
-        assert!(doubts(&["1", "2"])[0].contains("has 2 samples and says 3"));
-        let whole = doubts(&["1", "2", "3"]);
-        assert!(whole.len() == 1 && whole[0].contains("to the right and down"), "{whole:?}");
-    }
-
-    /// A time in a unit that is none is no time in seconds, and one of two times is not guessed.
-    #[test]
-    fn a_time_that_is_not_known_is_none() {
-        let of = |code: &str, more: &[(&str, &str)]| {
-            let keys = [&[("Channel code", code)][..], more].concat();
-            MmeChannel::parse("a.001".into(), &channel(&keys, &["0", "1"])).unwrap()
-        };
-        let force = of("11BARR000000FOXP", &[("Reference channel", "explicit")]);
-        let [us, other] =
-            ["us", "fortnights"].map(|unit| of("11TIRS000000TIRP", &[("Unit", unit)]));
-        let again = of("12TIRS000000TIRP", &[]);
-        let all = [force, us];
-        assert_eq!(explicit_s(&all, &all[0]), Some(vec![0.0, 1e-6]));
-        let [force, us] = all;
-        let all = [force, other];
-        assert_eq!(explicit_s(&all, &all[0]), None);
-        let [force, _] = all;
-        let all = [force, us, again];
-        assert_eq!(explicit_s(&all, &all[0]), None);
-    }
-
-    #[test]
-    fn a_line_that_is_no_value_is_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.001");
-        let keys = [("Channel code", "X"), ("Sampling interval", "0.1"), ("Unit", "N")];
-        std::fs::write(&path, channel(&keys, &["1", "2 3"])).unwrap();
-        let error = Table::read(&path).unwrap_err().to_string();
-        assert!(error.contains("a.001:5:1: "), "{error}");
-        std::fs::write(&path, channel(&keys, &["1", "2"])).unwrap();
-        assert_eq!(Table::read(&path).unwrap().n_rows(), 2);
-    }
-}
+#[path = "iso_mme_tests.rs"]
+mod tests;

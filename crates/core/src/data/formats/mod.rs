@@ -9,6 +9,7 @@ mod bytes;
 mod cdr;
 mod fem;
 mod iso_mme;
+mod iso_mme_channel;
 mod mdf;
 mod mdf_blocks;
 mod mdf_records;
@@ -21,6 +22,7 @@ mod recorder;
 mod recorder_table;
 mod tdms;
 mod tdms_file;
+mod tdms_objects;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

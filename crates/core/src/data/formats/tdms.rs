@@ -11,7 +11,8 @@ use std::time::{Duration, UNIX_EPOCH};
 
 use crate::data::budget::MAX_TABLE_BYTES;
 use crate::data::formats::bytes::{plain, some};
-use crate::data::formats::tdms_file::{Cell, Kind, Object, Stamp, TdmsFile};
+use crate::data::formats::tdms_file::{Cell, TdmsFile};
+use crate::data::formats::tdms_objects::{Kind, Object, Stamp};
 use crate::data::formats::{Converted, Said, chosen_part, number_text};
 use crate::data::spelling::{Meaning, meaning};
 use crate::data::{Channel, DataError, ReadSettings, Sheet, read_bytes};

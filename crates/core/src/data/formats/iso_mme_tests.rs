@@ -1,0 +1,113 @@
+//! Tests in ISO-MME as tables: times, cut channels and lines that are no values.
+
+use super::*;
+use crate::data::{Channel, Table, read_any_series};
+
+fn channel(pairs: &[(&str, &str)], values: &[&str]) -> String {
+    let head: String = pairs.iter().map(|(key, value)| format!("{key:<28}:{value}\n")).collect();
+    head + &values.join("\n") + "\n"
+}
+
+/// A test with a time of its own, a force over it and an acceleration with an implicit time.
+fn write(folder: &Path, newline: &str) -> PathBuf {
+    let inner = folder.join("CHANNEL");
+    std::fs::create_dir(&inner).unwrap();
+    let put = |path: PathBuf, text: String| {
+        let bytes: Vec<u8> = text.replace('\n', newline).chars().map(|c| c as u8).collect();
+        std::fs::write(path, bytes).unwrap();
+    };
+    let mme = channel(&[("Laboratory name", "Pr\u{fc}fer"), ("Data format", "ISO-MME")], &[]);
+    put(folder.join("t.mme"), mme);
+    let time =
+        [("Channel code", "11TIRS000000TIRP"), ("Name of the channel", "time"), ("Unit", "ms")];
+    put(inner.join("T.001"), channel(&time, &["0", "1", "2"]));
+    let force = [
+        ("CHANNEL CODE", "11BARR000000FOXP"),
+        ("Name of the channel", "Kraft"),
+        ("Reference channel", "explicit"),
+        ("Reference channel name", "11TIRS000000TIRP"),
+        ("Unit", "kN"),
+        ("Data status", "ok"),
+    ];
+    put(inner.join("t.002"), channel(&force, &["-1", "-2", "-1"]));
+    let other = [
+        ("Channel code", "11SEAT000000ACXP"),
+        ("Reference channel", "implicit"),
+        ("Time of first sample", "-0.001"),
+        ("Sampling interval", "0.0005"),
+        ("Unit", "g"),
+    ];
+    put(inner.join("t.003"), channel(&other, &["0", "NOVALUE", "3", "4"]));
+    folder.join("t.mme")
+}
+
+#[test]
+fn explicit_and_implicit_times_are_parts() {
+    for newline in ["\n", "\r\n"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = write(folder.path(), newline);
+        let table = Table::read(&path).unwrap();
+        assert_eq!(table.header(), ["time [s]", "11BARR000000FOXP Kraft [kN]"]);
+        assert_eq!(table.sheet().unwrap().all.len(), 2);
+        let map = "fx_body=2:kN,fy_body=none".parse().unwrap();
+        let loaded = read_any_series(&path, Some(&map)).unwrap();
+        assert_eq!(loaded.series.time_s(), [0.0, 0.001, 0.002]);
+        assert_eq!(loaded.series.require(Channel::FxBody).unwrap(), [-1e3, -2e3, -1e3]);
+        let beside = crate::data::parts_beside(&path);
+        assert_eq!(beside.len(), 4, "{beside:?}");
+        assert!(beside[0] == path && beside[1].ends_with("CHANNEL/T.001"), "{beside:?}");
+        // The other part has no channel with all of its samples.
+        let alone = folder.path().join("CHANNEL/t.002");
+        assert!(Table::read(&alone).is_err());
+    }
+}
+
+#[test]
+fn a_cut_channel_and_another_axis_are_said() {
+    let keys = [
+        ("Channel code", "11SEAT000000ACYP"),
+        ("Time of first sample", "-0.1"),
+        ("Sampling interval", "0.1"),
+        ("Number of samples", "3"),
+    ];
+    let doubts = |values: &[&str]| {
+        let text = channel(&keys, values);
+        let settings = ReadSettings::default();
+        as_table(Path::new("a.001"), &text, &settings).unwrap().unwrap().said.doubts
+    };
+    assert!(doubts(&["1", "2"])[0].contains("has 2 samples and says 3"));
+    let whole = doubts(&["1", "2", "3"]);
+    assert!(whole.len() == 1 && whole[0].contains("to the right and down"), "{whole:?}");
+}
+
+/// A time in a unit that is none is no time in seconds, and one of two times is not guessed.
+#[test]
+fn a_time_that_is_not_known_is_none() {
+    let of = |code: &str, more: &[(&str, &str)]| {
+        let keys = [&[("Channel code", code)][..], more].concat();
+        MmeChannel::parse("a.001".into(), &channel(&keys, &["0", "1"])).unwrap()
+    };
+    let force = of("11BARR000000FOXP", &[("Reference channel", "explicit")]);
+    let [us, other] = ["us", "fortnights"].map(|unit| of("11TIRS000000TIRP", &[("Unit", unit)]));
+    let again = of("12TIRS000000TIRP", &[]);
+    let all = [force, us];
+    assert_eq!(explicit_s(&all, &all[0]), Some(vec![0.0, 1e-6]));
+    let [force, us] = all;
+    let all = [force, other];
+    assert_eq!(explicit_s(&all, &all[0]), None);
+    let [force, _] = all;
+    let all = [force, us, again];
+    assert_eq!(explicit_s(&all, &all[0]), None);
+}
+
+#[test]
+fn a_line_that_is_no_value_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.001");
+    let keys = [("Channel code", "X"), ("Sampling interval", "0.1"), ("Unit", "N")];
+    std::fs::write(&path, channel(&keys, &["1", "2 3"])).unwrap();
+    let error = Table::read(&path).unwrap_err().to_string();
+    assert!(error.contains("a.001:5:1: "), "{error}");
+    std::fs::write(&path, channel(&keys, &["1", "2"])).unwrap();
+    assert_eq!(Table::read(&path).unwrap().n_rows(), 2);
+}
