@@ -21,9 +21,9 @@ use impactlab_reconstruct::evidence::{Edr, Evidence};
 /// Read a recorder, a crash test, a log or a ground, and write what can be used of it
 ///
 /// Files are known by their content: reports of Bosch CDR tools as CSV, tests of the NHTSA database (.EV5 with
-/// its curves), ISO-MME, GPX, NMEA, VBO, Parquet, TDMS, MDF, results of LS-DYNA (rcforc, nodout, secforc,
-/// binout) and OpenRadioss (T01), and tables; for a ground KML, GeoJSON, points of a total station, LAS, LAZ
-/// and E57.
+/// its curves), ISO-MME, GPX, NMEA, VBO, Parquet, TDMS, MDF, results of LS-DYNA (rcforc, nodout, rbdout,
+/// secforc, binout) and OpenRadioss (T01), and tables; for a ground KML, GeoJSON, points of a total station,
+/// LAS, LAZ and E57.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct ImportArgs {

@@ -53,7 +53,8 @@ pub(in crate::cli) struct RecordArgs {
     #[arg(long, value_parser = one_of(AXLES), default_value = "front")]
     driven: DrivenAxle,
     /// Angle of the steering wheel over that of the road wheels; 16 ± 2 if not given
-    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO), allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO),
+        allow_hyphen_values = true)]
     steering_ratio: Option<f64>,
     /// Its standard deviation; 3 % if not given
     #[arg(long, value_name = "SIGMA", value_parser = number(STEERING_RATIO_SIGMA))]

@@ -76,7 +76,8 @@ pub(in crate::cli) struct EndingArgs {
         allow_hyphen_values = true, requires = "steering_ratio")]
     steering_wheel: Option<f64>,
     /// Angle of the steering wheel over that of the road wheels; 12 to 20 in cars
-    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO), requires = "steering")]
+    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO),
+        allow_hyphen_values = true, requires = "steering")]
     pub(in crate::cli) steering_ratio: Option<f64>,
     /// When the steering begins, s
     #[arg(long, value_name = "TIME", value_parser = number(CONTROL_TIME), default_value = "0",

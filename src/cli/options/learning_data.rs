@@ -65,7 +65,8 @@ struct LogArgs {
     #[arg(long, requires = "log", conflicts_with_all = ["force", "impact"])]
     no_impact: bool,
     /// Angle of the steering wheel over that of the road wheels, for logs with steering_wheel
-    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO), allow_hyphen_values = true, requires = "log")]
+    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO),
+        allow_hyphen_values = true, requires = "log")]
     steering_ratio: Option<f64>,
     /// How much of a log from the first contact on is learned from, s
     #[arg(long, value_name = "TIME", value_parser = number(LOG_DURATION), default_value_t = DEFAULT_LOG_DURATION_S, requires = "log")]

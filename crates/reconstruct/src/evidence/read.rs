@@ -85,7 +85,7 @@
 //! y_m = 0.0
 //! heading_deg = 0
 //! speed_m_s = [5, 45]               # ranges: and sideslip_deg, yaw_rate_deg_s, road_wheel_deg,
-//! brake_start_s = [0, 0.1]          # brake_share
+//! brake_start_s = [0, 0.1]          # brake_share, braked_before_s, braked_before_share
 //!
 //! [[recorded_speed]]
 //! time_s = 0.0                      # after the start

@@ -22,6 +22,9 @@ const FILLED_UP_M_S: f64 = 2.0;
 /// Rate at which a car that drives on its tires changes its speed at most, m/s²: that of dry friction and some.
 const TIRES_M_S2: f64 = 12.0;
 
+/// Least time that several rows before a crash cover, s: recorders keep one to ten a second.
+const SHORTEST_S: f64 = 0.1;
+
 /// Rounding of a recorded speed, m/s: 1 mph and its halves.
 const ROUNDING_M_S: f64 = 0.6;
 
@@ -119,12 +122,14 @@ impl RecorderRecord {
                 .push("a speed before the crash is beyond that of a car; none is taken".to_owned());
             return;
         };
-        let in_time = |row: &usize| time_s.get(*row).copied().flatten();
+        // The crash may stand there at −0 s.
+        let in_time = |row: &usize| time_s.get(*row).copied().flatten().map(|at_s| at_s + 0.0);
         let time_s: Vec<f64> = rows.iter().filter_map(in_time).collect();
         if time_s.windows(2).any(|pair| pair.first() >= pair.last()) {
             doubts.push("the times before the crash do not increase; none is taken".to_owned());
             return;
         }
+        doubts.extend(too_short(&time_s));
         match beyond_tires(&time_s, &speed_m_s) {
             Some(why) => doubts.push(why),
             None => {
@@ -192,6 +197,17 @@ fn rows_before(
         }
     }
     rows
+}
+
+/// That rows before a crash follow each other faster than any recorder keeps them.
+fn too_short(time_s: &[f64]) -> Option<String> {
+    let covered_s = time_s.last()? - time_s.first()?;
+    (covered_s > 0.0 && covered_s < SHORTEST_S).then(|| {
+        format!(
+            "the {} rows before the crash cover {covered_s:.3} s in all: check the unit of their times",
+            time_s.len()
+        )
+    })
 }
 
 impl Table563<'_> {
@@ -276,11 +292,14 @@ fn beyond_tires(time_s: &[f64], speed_m_s: &[f64]) -> Option<String> {
     ))
 }
 
-/// The last change of velocity of a record.
+/// The last change of velocity of a record; `None` of one that ends where it begins, at 0 s.
 fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
-    let (ends_s, delta_v_m_s) = *pairs.last()?;
+    let (ends_s, delta_v_m_s) = *pairs.last().filter(|(ends_s, _)| *ends_s > 0.0)?;
     let earlier = pairs.iter().rev().find(|(at_s, _)| ends_s - at_s >= SETTLED_S - 1e-9);
-    let is_cut = earlier.is_some_and(|(_, value)| (delta_v_m_s - value).abs() > CUT_M_S);
+    // Before the recorder woke up nothing had changed.
+    let at_wake_up = (ends_s < SETTLED_S).then_some(0.0);
+    let earlier = earlier.map(|(_, value)| *value).or(at_wake_up);
+    let is_cut = earlier.is_some_and(|value| (delta_v_m_s - value).abs() > CUT_M_S);
     Some(RecordedDeltaV { delta_v_m_s, ends_s: Some(ends_s), is_cut })
 }
 

@@ -85,6 +85,32 @@ fn a_pulse_that_is_cut_off_is_said_so() {
     assert!(record.doubts.iter().any(|doubt| doubt.contains("cut off")), "{record:?}");
 }
 
+#[test]
+fn a_record_of_a_few_milliseconds_is_no_whole_pulse() {
+    let rows = |rows: &str| read(&format!("Time [ms],Delta-V Longitudinal [km/h]\n{rows}"), None);
+    let short = rows("0,0\n5,-2\n10,-5\n").unwrap();
+    assert!(short.delta_v_ahead.unwrap().is_cut, "{short:?}");
+    assert!(short.doubts.iter().any(|doubt| doubt.contains("cut off")), "{short:?}");
+    // The largest change alone does not say that it went on.
+    assert!(!rows("120,-32\n").unwrap().delta_v_ahead.unwrap().is_cut);
+    // Before the crash nothing has changed, which is no change of 0 km/h by it.
+    let text = "Time [ms],Speed [km/h],Delta-V Longitudinal [km/h]\n-1000,64,0\n-0,60,0\n";
+    let before = read(text, None).unwrap();
+    assert_eq!(before.delta_v_ahead, None);
+    assert!(before.before.time_s.iter().all(|at_s| at_s.to_bits() != (-0.0_f64).to_bits()));
+}
+
+/// Seconds under a heading of milliseconds.
+#[test]
+fn seconds_before_a_crash_that_cover_milliseconds_are_said() {
+    let is_said = |unit: &str| {
+        let text = format!("Time [{unit}],Speed [mph]\n-5,45\n-2.5,45\n0,45\n");
+        let record = read(&text, None).unwrap();
+        record.doubts.iter().any(|doubt| doubt.contains("cover 0.005 s"))
+    };
+    assert!(is_said("ms") && !is_said("s"));
+}
+
 /// Zeros after the end of a record, and the 127 km/h that stand for no value.
 #[test]
 fn rows_that_fill_up_a_record_are_no_change_of_velocity() {

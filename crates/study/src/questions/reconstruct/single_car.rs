@@ -5,7 +5,7 @@ use crate::{ReconstructRequest, VehicleChoice};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::Phrase;
 use impactlab_reconstruct::Latent;
-use impactlab_reconstruct::evidence::{Evidence, Start, YesNoUnknown};
+use impactlab_reconstruct::evidence::{Evidence, Start, YesNoUnknown, ends};
 
 /// What is assumed of everything but the friction that nobody stated.
 pub(super) const GROUPS: &[Group] = &[
@@ -147,7 +147,21 @@ pub(super) fn unused(request: &ReconstructRequest, evidence: &Evidence) -> Vec<C
 
 /// What the intervals do not allow for.
 pub(super) fn restrictions(evidence: &Evidence) -> Vec<Caveat> {
-    end_open(evidence).into_iter().chain([of_validation()]).collect()
+    let open = end_open(evidence).into_iter().chain(brakes_twice(evidence));
+    open.chain([of_validation()]).collect()
+}
+
+/// That a driver who braked before the start is said to begin to brake after it.
+fn brakes_twice(evidence: &Evidence) -> Option<Caveat> {
+    let is_later = ends(evidence.start.brake_start_s).is_some_and(|[first_s, _]| first_s > 0.0);
+    let is_read = evidence.brakes_before_start() && !evidence.after.is_all_locked();
+    let text = Phrase::new(
+        "braking before the start does not go with a driver who begins to brake after it: [start] braked_before_s, \
+         brake_start_s",
+        "eine Bremsung vor dem Anfang passt nicht zu einem Fahrer, der erst danach zu bremsen beginnt: [start] \
+         braked_before_s, brake_start_s",
+    );
+    (is_later && is_read).then(|| Caveat::new(CaveatKind::Disagreement, text))
 }
 
 /// That the end of the marks stands for the place of rest where nobody says this.
@@ -211,6 +225,17 @@ mod tests {
             |start: &str, wheels: &str| !unused(&request, &evidence(start, wheels)).is_empty();
         assert!(unused(share, "") && unused(&both, "driver_braked = \"no\""));
         assert!(!unused(&both, "") && !unused(time, ""));
+    }
+
+    #[test]
+    fn braking_before_the_start_that_begins_after_it_is_told() {
+        let told = |start: &str, wheels: &str| brakes_twice(&evidence(start, wheels)).is_some();
+        let (before, later) = ("braked_before_s = [0.2, 0.4]", "brake_start_s = [1, 2]");
+        let both = format!("{before}\n{later}");
+        assert!(told(&both, "") && !told(&both, "driver_braked = \"no\""));
+        assert!(!told(before, "") && !told(later, ""));
+        assert!(!told(&format!("{before}\nbrake_start_s = [0, 2]"), ""));
+        assert!(restrictions(&evidence(&both, "")).iter().any(|it| it.text.contains("after it")));
     }
 
     #[test]
