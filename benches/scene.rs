@@ -50,7 +50,7 @@ fn scene() -> Scene {
     let (density, n_ghosts) = (Some(&density), N_GHOSTS);
     add_forecast(
         &mut scene,
-        &ForecastScene { analysis, forecast, density, until_s: f64::INFINITY, n_ghosts, seed: 0 },
+        &ForecastScene { analysis, forecast, density, until_s: f64::INFINITY, n_ghosts },
     );
     scene
 }

@@ -166,7 +166,8 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
 /// Errors of the shipped response network on cars that it has not seen, each by its data sheet, and how
 /// often its regions held.
 fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
-    let mut cases = Vec::new();
+    let mut cases: Vec<(ComparedCase, MotionCoverage)> = Vec::new();
+    let mut n_left_out = 0;
     for car in list_folder(path)?.into_iter().filter(|car| car.is_dir()) {
         let question = EvaluateResponseRequest {
             model: ModelChoice::default(),
@@ -176,20 +177,25 @@ fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
             seed: 0,
             bad_cases: BadCases::LeaveOut,
         };
-        cases.extend(answer(&question)?.report.report.comparison.cases);
+        let report = answer(&question)?.report.report;
+        n_left_out += report.left_out.len();
+        for case in report.comparison.cases {
+            let coverage = case.metrics.coverage.ok_or("no regions")?;
+            cases.push((case, coverage));
+        }
     }
-    let coverage = |case: &ComparedCase| case.metrics.coverage.unwrap_or_default();
+    println!("motions of cars held out: {} measured, {n_left_out} left out", cases.len());
     let mut rows = Vec::new();
     for (name, is_braked) in [("coasting", false), ("braked", true)] {
-        let of: Vec<&ComparedCase> =
-            cases.iter().filter(|case| case.is_braked == is_braked).collect();
+        let of: Vec<&(ComparedCase, MotionCoverage)> =
+            cases.iter().filter(|(case, _)| case.is_braked == is_braked).collect();
         let summary = |value: fn(&ComparedCase) -> Option<f64>| {
-            Summary::from_values(of.iter().copied().filter_map(value)).ok_or("no cases")
+            Summary::from_values(of.iter().filter_map(|(case, _)| value(case))).ok_or("no cases")
         };
         let path_m = summary(|case| Some(case.metrics.average_error_4_s_m))?;
         let end_m = summary(|case| Some(case.metrics.error.final_error_m))?;
         let share = |value: fn(&MotionCoverage) -> f64| {
-            let sum: f64 = of.iter().map(|case| value(&coverage(case))).sum();
+            let sum: f64 = of.iter().map(|(_, coverage)| value(coverage)).sum();
             format!("{:.0} %", 100.0 * sum / of.len().max(1) as f64)
         };
         rows.push(Row::new(
@@ -208,7 +214,7 @@ fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
         ));
     }
     let count = |holds: fn(&MotionCoverage) -> f64| {
-        cases.iter().filter(|case| holds(&coverage(case)) > 0.5).count()
+        cases.iter().filter(|(_, coverage)| holds(coverage) > 0.5).count()
     };
     let held = HeldIntervals {
         quantity: "place at the end".to_owned(),

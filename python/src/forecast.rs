@@ -24,7 +24,8 @@ pub(crate) struct Forecast {
     report: Py<PyAny>,
     /// Bands of the struck vehicle over time.
     bands: Py<PyDict>,
-    /// Its path in each draw.
+    /// Its path in each draw; of a car that is followed by itself the central path under each force, or of each
+    /// vehicle where these are more.
     paths: Py<PyDict>,
     /// Bands of the striking vehicle; None where it is not followed.
     striking_bands: Option<Py<PyDict>>,

@@ -40,7 +40,7 @@ fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
     save(&mut harness, "workspace-case.png");
     harness.get_by_label("Motion forecast").click();
     harness.run_steps(4);
-    assert!(harness.query_all_by_label("components").next().is_some());
+    assert!(harness.query_all_by_label("drawn motions").next().is_some());
     save(&mut harness, "workspace-case-forecast.png");
 
     apply(&mut harness, Command::ShowDoors);

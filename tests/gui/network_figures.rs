@@ -6,7 +6,7 @@ use std::path::Path;
 
 use egui_kittest::image_snapshot;
 use impactlab_core::data::Dataset;
-use impactlab_core::uncertainty::{Caveats, CurveComponent, CurveMixture, ForceCurve};
+use impactlab_core::uncertainty::{Caveats, CurveComponent, CurveMixture, ForceCurve, PeakFactors};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{
     CoveragePoint, Figure, FigureElement, ForceComponent, ForecastFigure, LossCurve, ParityPoint,
@@ -47,6 +47,7 @@ fn about(curve: &ForceCurve) -> CurveMixture {
         factors,
         variance,
         lag_correlation: 0.0,
+        peak: PeakFactors::default(),
     }])
     .expect("a mixture")
 }

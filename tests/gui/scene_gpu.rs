@@ -64,14 +64,7 @@ fn forecast_scene() -> Scene {
     let (forecast, density) = (&answer.forecast, Some(&density));
     add_forecast(
         &mut scene,
-        &ForecastScene {
-            analysis,
-            forecast,
-            density,
-            until_s: f64::INFINITY,
-            n_ghosts: 30,
-            seed: 0,
-        },
+        &ForecastScene { analysis, forecast, density, until_s: f64::INFINITY, n_ghosts: 30 },
     );
     scene
 }

@@ -18,10 +18,13 @@ use impactlab_document::report::{
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
 use impactlab_study::{
-    EvidenceChoice, ForceSource, ImpactRequest, Library, Measurements, ModelChoice, MotionSource,
-    PredictMotionRequest, ReconstructRequest, Report, ScenarioChoice, SimulateDatasetRequest,
-    VehicleChoice,
+    EvidenceChoice, ForceQuestion, ForceSource, ImpactRequest, Library, Measurements, ModelChoice,
+    MotionSource, PredictForceRequest, PredictMotionRequest, ReconstructRequest, Report,
+    ScenarioChoice, SimulateDatasetRequest, VehicleChoice,
 };
+
+use impactlab_networks::force::ForceModel;
+use impactlab_networks::learning::ModelFile;
 
 use crate::report_pdf::gray;
 
@@ -271,6 +274,37 @@ fn notes_of_variants_stand_in_their_table() {
     let (document, _) = report(&case, &english());
     assert!(named(&document));
     assert_says(&document, "the road was wet");
+}
+
+/// An own network was said to have learned from the collisions of the shipped one, and to err as that does.
+#[test]
+fn what_the_shipped_networks_did_is_not_said_of_a_network_of_the_user() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models/force.safetensors");
+    let report_of = |model: ModelChoice| {
+        let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
+        let question = PredictForceRequest {
+            collision: ForceQuestion::Scenario(scenario),
+            model,
+            body: None,
+            open_contact: false,
+            samples: 0,
+            seed: 0,
+        };
+        let variant = Variant {
+            name: "own".to_owned(),
+            questions: vec![question.into()],
+            ..Variant::default()
+        };
+        report(&CaseFile::new("own", variant), &english()).0
+    };
+    let other =
+        "Answered by other networks than the shipped ones: force network (force.safetensors).";
+    assert_says(&report_of(ModelChoice::file(&file)), other);
+    let shipped = report_of(ModelChoice::default());
+    assert!(!texts(&shipped).iter().any(|text| text.contains("Answered by other networks")));
+    let record = ForceModel::load(&file).expect("the shipped network").record().clone();
+    let n_learned = record.train.len() + record.detail.validation.len();
+    assert_says(&shipped, &format!("The shipped one learned from {n_learned} simulated impacts"));
 }
 
 fn count_of(document: &ReportDocument, start: &str) -> usize {

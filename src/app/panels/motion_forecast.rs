@@ -239,8 +239,8 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
     }
     ui.horizontal_wrapped(|ui| {
         ui.strong("Show");
-        ui.checkbox(&mut view.components, "components")
-            .on_hover_text("Mean paths of motions that end near each other, 15 at most");
+        ui.checkbox(&mut view.drawn_motions, "drawn motions")
+            .on_hover_text("Paths of the forecast's draws, 15 at most");
         ui.checkbox(&mut view.simulation, "4DOF model");
         ui.checkbox(&mut view.reference, "recorded motion");
         let follow = ui.checkbox(&mut view.follow, "follow");
@@ -291,7 +291,7 @@ fn figures_ui(
     let density = session.response.density.ok().filter(is_shown);
     let input = MotionForecastFigure {
         density: density.map(|density| density.map.as_ref()),
-        components: choice.components,
+        draws: choice.drawn_motions,
         reference: analysis.reference.as_ref().filter(|_| choice.reference),
         simulation: motion_of(analysis).filter(|_| choice.simulation),
         ..bare_figure(answer, &caveats, time_s, view.units)

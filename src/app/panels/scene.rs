@@ -66,7 +66,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let recorded = overlaid(project.beside.recording.as_ref(), &session.sources);
     let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
     let source = SceneSource {
-        forecast: State::shown_forecast(view, project, session),
+        forecast: State::shown_forecast(view, session),
         answer: Arc::clone(&answer),
         others: SceneSource::others(variants),
         recording: project

@@ -24,8 +24,9 @@ pub struct ResponseView {
     pub window_s: [f64; 2],
     /// Whether the scene follows the vehicle and shows only its surroundings at the current time.
     pub follow: bool,
-    /// Whether the mean paths of motions that end near each other are drawn.
-    pub components: bool,
+    /// Whether paths of drawn motions are shown.
+    #[serde(alias = "components")]
+    pub drawn_motions: bool,
     /// Whether the simulated motion of the 4DOF model is drawn.
     pub simulation: bool,
     /// Whether the recorded motion is drawn.
@@ -46,7 +47,7 @@ impl Default for ResponseView {
             density: DensityChoice::default(),
             window_s: [0.0, 4.0],
             follow: false,
-            components: true,
+            drawn_motions: true,
             simulation: true,
             reference: true,
             loss_terms: ["total", "data", "trajectory"].map(str::to_owned).to_vec(),
@@ -54,5 +55,16 @@ impl Default for ResponseView {
             compared_case: None,
             compared_choice: 0,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_that_were_hidden_under_their_former_name_stay_hidden() {
+        let view: ResponseView = serde_json::from_str(r#"{"components": false}"#).unwrap();
+        assert_eq!(view, ResponseView { drawn_motions: false, ..ResponseView::default() });
     }
 }

@@ -59,8 +59,6 @@ pub struct SceneSource {
 pub struct ShownForecast {
     /// The forecast.
     pub motion: Arc<MotionAnswer>,
-    /// Seed of the draws that are ghosts.
-    pub seed: u64,
     /// The density of the position at its end.
     pub density: Option<Arc<DensityAnswer>>,
 }
@@ -68,7 +66,7 @@ pub struct ShownForecast {
 impl ShownForecast {
     fn is_same(&self, other: &Self) -> bool {
         let of = |shown: &Self| shown.density.as_ref().map(Arc::as_ptr);
-        Arc::ptr_eq(&self.motion, &other.motion) && self.seed == other.seed && of(self) == of(other)
+        Arc::ptr_eq(&self.motion, &other.motion) && of(self) == of(other)
     }
 
     /// Adds it to the scene of its simulation.
@@ -82,7 +80,6 @@ impl ShownForecast {
                 density: self.density.as_ref().map(|density| &density.map),
                 n_ghosts: N_GHOSTS,
                 until_s: report.known_until_s(),
-                seed: self.seed,
             },
         );
         scene.caveats.add_variant("forecast", &report.caveats);

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::command::wake;
-use crate::app::project::Project;
 use crate::app::response::DensityQuestion;
 use crate::app::scene::session::ShownForecast;
 use crate::app::state::{Session, State, View};
@@ -27,18 +26,13 @@ impl State {
     }
 
     /// The forecast in the scene: the one that is of what is asked now, if it is to be shown.
-    pub(in crate::app) fn shown_forecast(
-        view: &View,
-        project: &Project,
-        session: &Session,
-    ) -> Option<ShownForecast> {
+    pub(in crate::app) fn shown_forecast(view: &View, session: &Session) -> Option<ShownForecast> {
         let forecast = &session.response.forecast;
         let is_shown = view.scene.shows_forecast && !session.is_motion_late();
         let motion = forecast.ok().filter(|_| is_shown)?;
         let density = session.scene.end_density.ok().cloned();
         Some(ShownForecast {
             motion: Arc::clone(motion),
-            seed: project.predict_motion.seed,
             density: density.filter(|density| Arc::ptr_eq(&density.motion, motion)),
         })
     }

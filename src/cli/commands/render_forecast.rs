@@ -86,7 +86,7 @@ pub(super) fn figure(
     let caveats = &answer.report.caveats;
     let input = MotionForecastFigure {
         density: Some(&density),
-        components: true,
+        draws: true,
         ..MotionForecastFigure::new(&answer, &bands, caveats, at_s, units).with_motions(analysis)
     };
     let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == args.channel);

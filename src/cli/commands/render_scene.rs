@@ -294,7 +294,6 @@ fn add_ghosts(
             density: density.as_ref(),
             n_ghosts,
             until_s: answer.report.known_until_s(),
-            seed: request.seed,
         },
     );
     let report = &answer.report;

@@ -49,7 +49,7 @@ pub(in crate::cli) fn write_motion_prediction(
     let input = MotionForecastFigure {
         title: &answer.report.scenario,
         density: Some(&density),
-        components: true,
+        draws: true,
         reference: answer.analysis.reference.as_ref(),
         ..MotionForecastFigure::new(answer, &bands, &caveats, forecast.outcome.time_s, wanted.units)
     };

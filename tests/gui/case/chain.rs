@@ -58,5 +58,5 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     let motion = harness.query_all_by_label_contains("Motion:").next().expect("the link");
     motion.click();
     harness.run_steps(3);
-    harness.get_by_label("components");
+    harness.get_by_label("drawn motions");
 }

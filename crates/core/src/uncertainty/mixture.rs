@@ -21,6 +21,8 @@
 //! Left out: bounds. A duration or a force drawn far from its mean may have the wrong sign.
 
 use nalgebra::DMatrix;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use crate::uncertainty::{CURVE_INTERVAL_S, ForceCurve, MixtureError, NormalMixture, NormalPart};
 
@@ -40,6 +42,46 @@ pub struct CurveComponent {
     pub variance: Vec<f64>,
     /// Correlation φ of the residuals of neighbouring instants, `0 ≤ φ < 1`.
     pub lag_correlation: f64,
+    /// How the peak of a drawn curve is told.
+    pub peak: PeakFactors,
+}
+
+/// Factors on the peaks of drawn curves.
+///
+/// ```text
+/// peak = scale · p̄ · (p / p̄)^spread      p: largest |F| of the drawn curve, p̄: of the mean curve
+/// ```
+///
+/// A normal distribution of the forces at all instants that is right about them and about their impulse
+/// need not be so about the largest of them: drawn curves are rougher than recorded ones, and mean curves
+/// flatter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PeakFactors {
+    /// Factor on all peaks.
+    pub scale: f64,
+    /// Factor on the deviation of their logarithms.
+    pub spread: f64,
+}
+
+impl Default for PeakFactors {
+    /// Factors that leave peaks unchanged.
+    fn default() -> Self {
+        Self { scale: 1.0, spread: 1.0 }
+    }
+}
+
+impl PeakFactors {
+    /// The peak that is told.
+    ///
+    /// - `peak_n`: that of the drawn curve, N;
+    /// - `mean_n`: that of the mean curve, N; where it is zero, the peak stays as it is.
+    pub fn apply(self, peak_n: f64, mean_n: f64) -> f64 {
+        match mean_n > 0.0 {
+            true => self.scale * mean_n * (peak_n / mean_n).powf(self.spread),
+            false => peak_n,
+        }
+    }
 }
 
 /// A mixture of [`CurveComponent`]s whose weights sum to one, whose shapes are equal and whose
@@ -302,7 +344,8 @@ pub(crate) mod tests {
             let variance = row(&|u| [1e4 + 2e4 * u, 4e4 + k, 1e-4]);
             let factors = DMatrix::from_iterator(mean.len(), 2, first.into_iter().chain(second));
             let lag_correlation = 0.9 * k / (1.0 + k);
-            CurveComponent { weight: 1.0 + k, mean, factors, variance, lag_correlation }
+            let peak = PeakFactors::default();
+            CurveComponent { weight: 1.0 + k, mean, factors, variance, lag_correlation, peak }
         };
         CurveMixture::new((0..n_components).map(component).collect()).unwrap()
     }

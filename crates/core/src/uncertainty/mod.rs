@@ -3,7 +3,7 @@
 //! scores. And the caveats of an answer: what it cannot promise and what it rests on.
 //!
 //! ```
-//! use impactlab_core::uncertainty::{CurveComponent, CurveMixture};
+//! use impactlab_core::uncertainty::{CurveComponent, CurveMixture, PeakFactors};
 //! use nalgebra::DMatrix;
 //! use rand::SeedableRng;
 //!
@@ -12,7 +12,8 @@
 //! let factors = DMatrix::from_column_slice(5, 1, &[0.0, 0.0, 1e3, 2e3, 0.0]);
 //! let variance = vec![1.0, 1.0, 1.0, 1.0, 1e-4];
 //! let lag_correlation = 0.0;
-//! let component = CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation };
+//! let peak = PeakFactors::default();
+//! let component = CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation, peak };
 //! let mixture = CurveMixture::new(vec![component])?;
 //! assert_eq!(mixture.mean().fy_n, [10e3, 20e3]);
 //! let [low, high] = mixture.impulse(1).interval(0.9);
@@ -51,10 +52,9 @@ pub use caveat_kind::{CaveatKind, CaveatSubject};
 pub use caveats::Caveats;
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;
-pub use mixture::{CurveComponent, CurveMixture};
+pub use mixture::{CurveComponent, CurveMixture, PeakFactors};
 pub use normal_mixture::{NormalMixture, NormalPart};
 pub use planar::{PlanarMixture, PlanarPart};
-pub use planar_draws::{pose_groups, predictive_factor};
 pub use planar_grid::{PlanarGrid, PlanarKernel};
 pub use sample::CurveQuantities;
 pub use scores::{distance_n, energy_score_n, sample_crps};

@@ -16,19 +16,19 @@ const HEADING_ARM_M: f64 = 2.3;
 /// (n + 1) (n − 1) / (n (n − 4))
 /// ```
 ///
-/// Without it the regions of 50 % of some 240 draws hold 36 to 47 % of others, and those of 90 % 84 to 88 %; with it
-/// 43 to 52 and 89 to 92 %.
+/// Without it the regions of 50 % of some 240 draws hold 36 to 47 % of others, and those of 90 % 84 to 88 %;
+/// with it 43 to 52 and 89 to 92 %.
 /// For fewer than 5 draws, where there is none, that of 5.
 ///
 /// Source: A. Gelman et al., Bayesian Data Analysis, 3rd ed., section 3.6.
-pub fn predictive_factor(n: usize) -> f64 {
+fn predictive_factor(n: usize) -> f64 {
     let n = n.max(5) as f64;
     (n + 1.0) * (n - 1.0) / (n * (n - 4.0))
 }
 
 impl PlanarMixture {
-    /// The distribution of the position of a further draw: a normal distribution for each group of
-    /// [`pose_groups`], widened by [`predictive_factor`].
+    /// The distribution of the position of a further draw: a normal distribution for each group of draws
+    /// that lie near each other, wider than the group as its mean and covariance are estimated.
     ///
     /// - `poses`: X, Y, m, and heading, rad, of each draw.
     pub fn from_poses(poses: &[[f64; 3]]) -> Self {
@@ -56,7 +56,7 @@ impl PlanarMixture {
 ///
 /// - `poses`: X, Y, m, and heading, rad, of each draw;
 /// - returns the indices of the draws of each group.
-pub fn pose_groups(poses: &[[f64; 3]]) -> Vec<Vec<usize>> {
+fn pose_groups(poses: &[[f64; 3]]) -> Vec<Vec<usize>> {
     let numbers =
         |idx: usize| poses.get(idx).map_or([0.0; 3], |&[x, y, yaw]| [x, y, yaw * HEADING_ARM_M]);
     let mut groups: Vec<Vec<usize>> = vec![(0..poses.len()).collect()];

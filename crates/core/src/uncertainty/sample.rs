@@ -5,7 +5,7 @@ use rand::{Rng, RngExt as _};
 use rand_distr::StandardNormal;
 
 use crate::numerics::{latin_normals, latin_uniforms, quantile_of_sorted};
-use crate::uncertainty::{CurveMixture, ForceCurve};
+use crate::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
 
 /// Impulse, peak and duration of drawn curves, one entry for each draw.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -32,6 +32,11 @@ impl CurveMixture {
     /// [`McKay1979`](crate::bibliography::McKay1979)), so that a few curves stand for the distribution
     /// better than independent ones would. A negative duration is replaced by zero.
     pub fn sample(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<ForceCurve> {
+        self.draw(n_samples, rng).into_iter().map(|(_, curve)| curve).collect()
+    }
+
+    /// Draws as [`Self::sample`], each with the index of its component.
+    fn draw(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<(usize, ForceCurve)> {
         let mut drawn = Vec::with_capacity(n_samples);
         let components = latin_uniforms(n_samples, rng);
         let n_factors = self.components().iter().map(|component| component.factors.ncols()).max();
@@ -62,14 +67,32 @@ impl CurveMixture {
             }
             let mut curve = ForceCurve::from_values(&values);
             curve.duration_s = curve.duration_s.max(0.0);
-            drawn.push(curve);
+            drawn.push((k, curve));
         }
         drawn
     }
 
-    /// Impulse, peak, time of the peak and duration of drawn curves.
-    pub fn sample_quantities(&self, n_samples: usize, rng: &mut impl Rng) -> CurveQuantities {
-        CurveQuantities::from_curves(&self.sample(n_samples, rng))
+    /// Draws as [`Self::sample`], with impulse, peak, time of the peak and duration of each curve. The
+    /// peak is that of the drawn curve with the factors of its component.
+    pub fn sample_quantities(
+        &self,
+        n_samples: usize,
+        rng: &mut impl Rng,
+    ) -> (Vec<ForceCurve>, CurveQuantities) {
+        let drawn = self.draw(n_samples, rng);
+        let peak_of_mean =
+            |component: &CurveComponent| ForceCurve::from_values(&component.mean).peak().0;
+        let means_n: Vec<f64> = self.components().iter().map(peak_of_mean).collect();
+        let mut quantities = CurveQuantities::default();
+        for (k, curve) in &drawn {
+            let (peak_n, peak_time_s) = curve.peak();
+            let factors = self.components()[*k].peak;
+            quantities.impulse_n_s.push(curve.impulse_n_s());
+            quantities.peak_n.push(factors.apply(peak_n, means_n[*k]));
+            quantities.peak_time_s.push(peak_time_s);
+            quantities.duration_s.push(curve.duration_s);
+        }
+        (drawn.into_iter().map(|(_, curve)| curve).collect(), quantities)
     }
 
     /// Index of the component at a share of the weights, 0 to 1.
@@ -86,18 +109,6 @@ impl CurveMixture {
 }
 
 impl CurveQuantities {
-    /// Impulse, peak, time of the peak and duration of given curves.
-    pub fn from_curves(curves: &[ForceCurve]) -> Self {
-        let peaks = curves.iter().map(ForceCurve::peak);
-        let (peak_n, peak_time_s) = peaks.unzip();
-        Self {
-            impulse_n_s: curves.iter().map(ForceCurve::impulse_n_s).collect(),
-            peak_n,
-            peak_time_s,
-            duration_s: curves.iter().map(|curve| curve.duration_s).collect(),
-        }
-    }
-
     /// Magnitude of the impulse of each draw, N s.
     pub fn impulse_magnitude_n_s(&self) -> Vec<f64> {
         self.impulse_n_s.iter().map(|[x, y]| x.hypot(*y)).collect()
@@ -126,7 +137,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::uncertainty::CurveComponent;
+    use crate::uncertainty::PeakFactors;
     use crate::uncertainty::mixture::tests::example;
 
     #[test]
@@ -138,6 +149,7 @@ mod tests {
             factors: DMatrix::zeros(2 * n + 1, 0),
             variance: vec![4.0; 2 * n + 1],
             lag_correlation: 0.7,
+            peak: PeakFactors::default(),
         };
         let mixture = CurveMixture::new(vec![component]).unwrap();
         let drawn = mixture.sample(500, &mut ChaCha8Rng::seed_from_u64(1));
@@ -156,8 +168,7 @@ mod tests {
         let mixture = example(3, 20);
         let n = 20_000;
         let mut rng = ChaCha8Rng::seed_from_u64(1);
-        let drawn = mixture.sample(n, &mut rng);
-        let quantities = CurveQuantities::from_curves(&drawn);
+        let (_, quantities) = mixture.sample_quantities(n, &mut rng);
         // The bounds are four standard errors of a mean; the spread of the impulse may be off by 3
         // %, some six of its standard errors.
         for axis in [0, 1] {
@@ -185,6 +196,27 @@ mod tests {
         let draw = |seed| mixture.sample_quantities(5, &mut ChaCha8Rng::seed_from_u64(seed));
         assert_eq!(draw(3), draw(3));
         assert_ne!(draw(3), draw(4));
+        assert_eq!(draw(3).0, mixture.sample(5, &mut ChaCha8Rng::seed_from_u64(3)));
+    }
+
+    #[test]
+    fn peaks_have_the_factors_of_their_component() {
+        let peaks = |peak| {
+            let mixture = example(1, 20).map_components(|component| component.peak = peak);
+            let (curves, drawn) = mixture.sample_quantities(50, &mut ChaCha8Rng::seed_from_u64(3));
+            (curves, drawn.peak_n, mixture.mean().peak().0)
+        };
+        let (curves, plain, mean_n) = peaks(PeakFactors::default());
+        let of_curves: Vec<f64> = curves.iter().map(|curve| curve.peak().0).collect();
+        for (told, drawn) in plain.iter().zip(&of_curves) {
+            assert!((told / drawn - 1.0).abs() < 1e-12, "{told} {drawn}");
+        }
+        let (same, told, _) = peaks(PeakFactors { scale: 1.2, spread: 2.0 });
+        assert_eq!(same, curves, "the curves stay");
+        for (told, drawn) in told.iter().zip(&of_curves) {
+            let expected = 1.2 * drawn * drawn / mean_n;
+            assert!((told / expected - 1.0).abs() < 1e-12, "{told} {expected}");
+        }
     }
 
     #[test]

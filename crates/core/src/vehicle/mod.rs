@@ -11,7 +11,6 @@ mod fixed_object;
 pub mod frames;
 mod loads;
 mod multibody_record;
-mod pace;
 mod parameters;
 mod preset;
 mod rest;
@@ -70,7 +69,6 @@ pub use friction_zone::{FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, fri
 pub(crate) use held_force::HeldForceRun;
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
-pub use pace::{Pace, rest_instant};
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, simulate_paths};
 pub use path_point::PathPoint;

@@ -19,10 +19,10 @@ use impactlab_study::analysis::{
 
 /// Opacity of the band at each of [`MOTION_BAND_LEVELS`].
 const BAND_OPACITIES: [f32; MOTION_BAND_LEVELS.len()] = [0.18, 0.25];
-/// Distance from the means of all components that the view around a vehicle covers, in standard
+/// Distance from the means of all groups of draws that the view around a vehicle covers, in standard
 /// deviations.
 const SURROUNDINGS_REACH: f64 = 3.0;
-/// Largest number of component paths that are drawn.
+/// Largest number of draws whose paths are shown.
 const MAX_PATHS: usize = 15;
 
 /// Data that the figures of a forecast show.
@@ -38,8 +38,8 @@ pub struct MotionForecastFigure<'a> {
     pub bands: &'a MotionBands,
     /// Probability density of the vehicle's position, if it is shown.
     pub density: Option<&'a DensityMap>,
-    /// Whether the mean paths of mixture components are drawn.
-    pub components: bool,
+    /// Whether paths of draws are shown.
+    pub draws: bool,
     /// Recorded motion, if there is one.
     pub reference: Option<&'a TimeSeries>,
     /// Motion simulated with the 4DOF model, if there is one.
@@ -62,7 +62,7 @@ pub struct MotionForecastFigure<'a> {
 }
 
 impl<'a> MotionForecastFigure<'a> {
-    /// A forecast without density, components, recorded and simulated motion.
+    /// A forecast without density, draws, recorded and simulated motion.
     pub fn new(
         answer: &'a PredictMotionAnswer,
         bands: &'a MotionBands,
@@ -77,7 +77,7 @@ impl<'a> MotionForecastFigure<'a> {
             central: &forecast.central,
             bands,
             density: None,
-            components: false,
+            draws: false,
             reference: None,
             simulation: None,
             striking: striking(answer),
@@ -142,7 +142,7 @@ pub const FORECAST_CHANNELS: [ForecastChannel; 6] = [
     ForecastChannel { channel: Channel::YawRate, axis: 5 },
 ];
 
-/// The forecast from above: central path, component paths, recorded and simulated path, density of
+/// The forecast from above: central path, paths of draws, recorded and simulated path, density of
 /// the position with its regions, and vehicle outlines at the time of the figure.
 pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
@@ -170,12 +170,9 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         };
         elements.extend(region.outlines.iter().map(outline));
     }
-    if input.components {
-        let components = &input.distribution.components;
-        let stride = components.len().div_ceil(MAX_PATHS).max(1);
-        for component in components.iter().step_by(stride) {
-            let means: Vec<_> = component.states.iter().map(|state| &state.mean).collect();
-            elements.push(path("components", Role::Muted, &means));
+    if input.draws {
+        for states in input.distribution.draws().iter().take(MAX_PATHS) {
+            elements.push(path("drawn motions", Role::Muted, &states.iter().collect::<Vec<_>>()));
         }
     }
     let line = |name: &str, role, style, series: &TimeSeries| -> Option<FigureElement> {
@@ -346,14 +343,14 @@ mod tests {
             time_s: (0..n_instants).step_by(5).map(|at| at as f64 * STEP_S).collect(),
             intervals: vec![[[[0.0, 1.0]; 2]; 6]; n_instants.div_ceil(5)],
         };
-        let (distribution, caveats) = (MotionDistribution::new(Vec::new()), Caveats::default());
+        let (distribution, caveats) = (MotionDistribution::default(), Caveats::default());
         let input = MotionForecastFigure {
             title: "case",
             distribution: &distribution,
             central: &central,
             bands: &bands,
             density: None,
-            components: false,
+            draws: false,
             reference: None,
             simulation: None,
             striking: None,

@@ -15,7 +15,7 @@ use crate::report::opinion::{Asked, considered_methods, opinion_blocks};
 use crate::report::parts::{InputRow, Part, PartProvenance};
 use crate::report::paths::ShownPaths;
 use crate::report::picture_blocks::picture_blocks;
-use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
+use crate::report::provenance::{change_notice, log_blocks, network_name, provenance_blocks};
 use crate::report::validation::validation_blocks;
 use crate::report::validity::validity_blocks;
 use crate::report::{Block, ReportDocument, ReportSettings};
@@ -23,7 +23,7 @@ use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_study::case_file::{CaseError, CaseFile, CaseOnDisk, CaseReport};
-use impactlab_study::{Library, Observer};
+use impactlab_study::{Library, ModelChoice, Observer};
 
 /// A variant with what its questions contribute.
 pub(super) struct VariantParts {
@@ -207,7 +207,23 @@ impl Builder<'_> {
         if blocks.is_empty() {
             return vec![Block::paragraph(words.no_methods)];
         }
-        [Block::paragraph(words.validation_text)].into_iter().chain(blocks).collect()
+        let text = Block::paragraph(words.validation_text);
+        [text].into_iter().chain(self.other_networks()).chain(blocks).collect()
+    }
+
+    /// That networks answered which are not the shipped ones, of which alone the measurements are.
+    fn other_networks(&self) -> Option<Block> {
+        let shipped = ModelChoice::default().to_string();
+        let mut others: Vec<String> = Vec::new();
+        for model in self.report.models().iter().filter(|model| model.name != shipped) {
+            let name = self.wording.name(&self.paths.shown(&model.name));
+            others.push(format!("{} ({name})", network_name(&model.network, self.wording)));
+        }
+        others.sort();
+        others.dedup();
+        let text = self.wording.words.validation_other_networks;
+        let list = [("list", &*others.join(", "))];
+        (!others.is_empty()).then(|| Block::Notice { text: fill(text, &list) })
     }
 
     fn sensitivity(&self, variants: &[VariantParts]) -> Vec<Block> {

@@ -8,7 +8,7 @@ use crate::scene::{
 };
 use impactlab_core::collision::Pose;
 use impactlab_core::vehicle::VehicleState;
-use impactlab_networks::response::STEP_S;
+use impactlab_networks::response::{MotionDistribution, STEP_S};
 use impactlab_study::analysis::{Analysis, DensityMap, MotionForecast};
 
 /// What a forecast adds to a scene.
@@ -22,31 +22,24 @@ pub struct ForecastScene<'a> {
     pub density: Option<&'a Arc<DensityMap>>,
     /// Time of a second contact, which is not computed, s: no density is shown after it.
     pub until_s: f64,
-    /// How many paths are drawn from the forecast, as ghosts.
+    /// How many of the draws of the forecast are shown as ghosts; all of them where there are fewer.
     pub n_ghosts: usize,
-    /// Seed of these draws.
-    pub seed: u64,
 }
 
 /// Adds a forecast to the scene of its simulation.
 pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
     let shape = struck_shape(input.analysis);
-    let ghosts = match &input.forecast.both {
-        Some(both) => {
-            let chosen = |paths: &[Vec<Pose>]| evenly(paths, input.n_ghosts);
-            let struck = ghosts(scene, &chosen(&input.forecast.paths), &shape, STRUCK_GHOSTS);
-            let striking = input.analysis.striking.as_ref().map(striking_shape);
-            let paths = chosen(&both.striking_paths);
-            let striking = striking.map(|shape| ghosts(scene, &paths, &shape, STRIKING_GHOSTS));
-            striking.into_iter().flatten().chain(struck).collect()
-        }
-        None => {
-            let drawn = input.forecast.distribution.draws(input.n_ghosts, input.seed);
-            ghosts(scene, &drawn, &shape, STRUCK_GHOSTS)
-        }
+    let chosen = |motion: &MotionDistribution| -> Vec<Vec<Pose>> {
+        motion.draws().iter().take(input.n_ghosts).map(|states| poses(states)).collect()
     };
+    let drawn = chosen(&input.forecast.distribution);
+    let struck = ghosts(scene, &drawn, &shape, STRUCK_GHOSTS);
+    let striking = input.forecast.both.as_ref().zip(input.analysis.striking.as_ref());
+    let striking = striking.map(|(both, track)| {
+        ghosts(scene, &chosen(&both.striking), &striking_shape(track), STRIKING_GHOSTS)
+    });
     // Behind the cars that are there already.
-    scene.cars.splice(0..0, ghosts);
+    scene.cars.splice(0..0, striking.into_iter().flatten().chain(struck));
     if let Some(map) = input.density.filter(|map| map.window_s[1] <= input.until_s) {
         add_density(scene, map);
     }
@@ -64,12 +57,6 @@ pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
 /// Name and role of the draws of each vehicle.
 const STRUCK_GHOSTS: (&str, SceneRole) = ("draws of the forecast", SceneRole::Forecast);
 const STRIKING_GHOSTS: (&str, SceneRole) = ("draws of the striking vehicle", SceneRole::Striking);
-
-/// Some of many, spread evenly.
-fn evenly(all: &[Vec<Pose>], n: usize) -> Vec<Vec<Pose>> {
-    let n = n.min(all.len());
-    (0..n).filter_map(|i| all.get(i * all.len() / n.max(1)).cloned()).collect()
-}
 
 /// Adds the paths of draws, and gives their cars.
 fn ghosts(
@@ -129,5 +116,51 @@ fn add_density(scene: &mut Scene, map: &Arc<DensityMap>) {
     let peak = map.values.iter().copied().fold(0.0, f64::max);
     if peak > 0.0 {
         scene.density = Some(SceneDensity { name, map: Arc::clone(map), peak });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use crate::scene::{SimulationScene, simulation_scene};
+    use impactlab_core::uncertainty::Caveats;
+    use impactlab_core::units::UnitSystem;
+    use impactlab_study::{
+        Event, ForceSource, Library, MotionSource, PredictMotionRequest, Question,
+    };
+
+    #[test]
+    fn ghosts_are_motions_of_the_forecast() {
+        let dataset = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets/trajectories-fea");
+        let source = MotionSource::Case { dataset, case: "FE_c002".to_owned() };
+        let request = PredictMotionRequest::new(source, ForceSource::Given);
+        let mut go_on = |_: Event<'_>| ControlFlow::Continue(());
+        let answer = request.answer(&Library::default(), &mut go_on).unwrap().complete().unwrap();
+        let (analysis, forecast) = (&answer.analysis, &answer.forecast);
+        let caveats = Caveats::default();
+        let mut scene = simulation_scene(&SimulationScene {
+            analysis,
+            others: &[],
+            units: UnitSystem::Si,
+            caveats: &caveats,
+        });
+        let input = ForecastScene { analysis, forecast, density: None, until_s: 4.0, n_ghosts: 20 };
+        add_forecast(&mut scene, &input);
+        let is_ghost = |car: &&SceneCar| car.name == STRUCK_GHOSTS.0;
+        let mut ends: Vec<Pose> = Vec::new();
+        for ghost in scene.cars.iter().filter(is_ghost) {
+            let shown: Vec<Pose> = ghost.motion.states().iter().map(|state| state.pose).collect();
+            let is_shown = |states: &Vec<VehicleState<f64>>| poses(states) == shown;
+            assert!(forecast.distribution.draws().iter().any(is_shown), "{shown:?}");
+            ends.extend(shown.last().copied());
+        }
+        assert_eq!(ends.len(), 20);
+        // No two are the same.
+        for (i, end) in ends.iter().enumerate() {
+            assert!(!ends[..i].contains(end), "{end:?}");
+        }
     }
 }

@@ -34,10 +34,9 @@ pub use population::{UnseenCar, is_same_car};
 pub use predict::weighted_mean;
 pub(crate) use predict::with_resistance;
 pub use predict::{
-    Applicability, ComponentMotion, ComponentPath, CoupledDraw, LATENT_NAMES, LEAST_MOTIONS,
-    LatentScales, MotionDistribution, MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain,
-    Predictor, RESISTANCE_SCATTER, ResponseModel, RestSearch, SettledMotion, SettledMotions,
-    StateDistribution, Widths,
+    Applicability, ComponentPath, CoupledDraw, LATENT_NAMES, LEAST_MOTIONS, LatentScales,
+    MotionDistribution, MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor,
+    RESISTANCE_SCATTER, ResponseModel, RestSearch, SettledMotion, SettledMotions, Widths,
 };
 pub use train::{
     ImpactRecord, RESPONSE_CHECKPOINT, ResponseCase, ResponseCaseError, ResponseEpoch,

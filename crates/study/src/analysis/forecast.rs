@@ -10,8 +10,7 @@ use impactlab_core::collision::{PrincipalDirectionOfForce, Pulse, PulseError, Pu
 use impactlab_core::numerics::random_stream;
 use impactlab_core::numerics::{quantile_of_sorted, wrap_angle_rad};
 use impactlab_core::uncertainty::{
-    CURVE_INTERVAL_S, CurveBands, CurveMixture, CurveQuantities, ForceCurve, MixtureError,
-    NormalMixture,
+    CURVE_INTERVAL_S, CurveBands, CurveMixture, ForceCurve, MixtureError, NormalMixture,
 };
 use impactlab_core::units::{Estimate, Interval};
 use impactlab_networks::force::metrics::BAND_LEVELS;
@@ -55,11 +54,12 @@ pub struct ForceForecast {
     pub impulse_n_s: [Estimate; 2],
     /// Magnitude of the impulse, N s, from draws.
     pub impulse_magnitude_n_s: Estimate,
-    /// Largest `|F|`, N, from draws.
+    /// Largest `|F|`, N, from draws, with the [`PeakFactors`](impactlab_core::uncertainty::PeakFactors) of
+    /// their components.
     pub peak_n: Estimate,
     /// Time at which the largest `|F|` occurs, s, from draws.
     pub peak_time_s: Estimate,
-    /// Contact duration, s, from the exact distribution.
+    /// Contact duration, s, from the exact distribution; not below zero.
     pub duration_s: Estimate,
     /// Principal direction of force on the struck vehicle, rad clockwise from straight ahead, from
     /// draws. The median lies in `[0, 2π)`; the ends of the intervals continue from it without a
@@ -99,10 +99,11 @@ impl ForceForecast {
     /// [`MixtureError`], which does not occur with a mixture that was checked when it was made.
     pub fn new(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
         let mut rng = random_stream(settings.seed, "draws", 0);
-        let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
-        let draws = CurveQuantities::from_curves(&curves);
+        let n_draws = N_DRAWS.max(settings.n_curves);
+        let (mut curves, draws) = mixture.sample_quantities(n_draws, &mut rng);
         curves.truncate(settings.n_curves);
-        let duration_s = bands_of(&mixture.duration_s());
+        // As drawn: what lies below zero is zero.
+        let duration_s = bands_of(&mixture.duration_s()).mapped(|time_s| time_s.max(0.0));
         let mean = ForceCurve { duration_s: duration_s.median, ..mixture.mean() };
         Ok(Self {
             bands: mixture.bands(&BAND_LEVELS)?,
@@ -171,7 +172,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use impactlab_core::uncertainty::CurveComponent;
+    use impactlab_core::uncertainty::{CurveComponent, PeakFactors};
 
     /// Half-sine pulses along y, with a share along x, whose height is changed by one latent
     /// factor.
@@ -184,7 +185,14 @@ mod tests {
             let mut variance = vec![1e4; 121];
             variance[120] = 1e-6;
             let factors = DMatrix::from_column_slice(121, 1, &factor);
-            CurveComponent { weight, mean, factors, variance, lag_correlation: 0.0 }
+            CurveComponent {
+                weight,
+                mean,
+                factors,
+                variance,
+                lag_correlation: 0.0,
+                peak: PeakFactors::default(),
+            }
         };
         CurveMixture::new([(0.3, 50e3), (0.7, 80e3)].map(component).to_vec()).unwrap()
     }
@@ -210,6 +218,19 @@ mod tests {
         assert_eq!((forecast.curves.len(), forecast.bands.fx.len()), (5, 4));
         assert!(forecast.modes.windows(2).all(|pair| pair[0].weight >= pair[1].weight));
         assert_eq!(forecast, ForceForecast::new(&example(), settings).unwrap());
+    }
+
+    /// The 90 % interval of a widened distribution began at −0.01 s.
+    #[test]
+    fn no_contact_lasts_for_less_than_no_time() {
+        let wide = example().map_components(|component| {
+            let last = component.variance.len() - 1;
+            component.variance[last] = 0.05 * 0.05;
+        });
+        let settings = ForecastSettings { n_curves: 1, seed: 3 };
+        let duration_s = ForceForecast::new(&wide, settings).unwrap().duration_s;
+        assert!(wide.duration_s().quantile(0.05) < 0.0, "the example has some below");
+        assert!(duration_s.ninety()[0] == 0.0 && duration_s.median > 0.05, "{duration_s:?}");
     }
 
     #[test]

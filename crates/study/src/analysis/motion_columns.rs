@@ -10,8 +10,8 @@ const PLANAR: [Channel; 6] =
     [Channel::X, Channel::Y, Channel::Yaw, Channel::Vx, Channel::Vy, Channel::YawRate];
 
 /// Columns by name: the time from first contact, then of X, Y, yaw, v_x, v_y and yaw rate the central path,
-/// the mean, the standard deviation and the edges of the intervals of [`MOTION_BAND_LEVELS`]. Each name
-/// ends in the unit and which of these it is: `x_m_low_90`.
+/// mean and standard deviation of the draws, and the edges of the intervals of [`MOTION_BAND_LEVELS`]. Each
+/// name ends in the unit and which of these it is: `x_m_low_90`.
 ///
 /// - `central`: the path with nothing uncertain, at every instant of the distribution;
 /// - `bands`: those of the distribution at every instant;

@@ -148,19 +148,28 @@ fn grid_about(position: &PlanarMixture) -> PlanarGrid {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use impactlab_core::vehicle::VehicleState;
-    use impactlab_networks::response::{ComponentMotion, StateDistribution};
-    use nalgebra::SMatrix;
 
-    /// A motion along X at 10 m/s, whose standard deviation grows from nearly zero to 0.5 m.
+    /// Draws on a circle that goes along X at 10 m/s and grows to half a metre, too few for several groups:
+    /// their distribution is a round one.
     fn motion() -> MotionDistribution {
-        let state = |i: usize| StateDistribution {
-            mean: VehicleState { x_m: i as f64 * STEP_S * 10.0, ..VehicleState::default() },
-            covariance: SMatrix::identity() * (0.005 * i as f64).powi(2).max(1e-12),
+        const N: usize = 12;
+        let draw = |k: usize| -> Vec<VehicleState<f64>> {
+            let (sin, cos) = (TAU * k as f64 / N as f64).sin_cos();
+            let state = |i: usize| {
+                let radius_m = 0.005 * i as f64;
+                VehicleState {
+                    x_m: i as f64 * STEP_S * 10.0 + radius_m * cos,
+                    y_m: radius_m * sin,
+                    ..VehicleState::default()
+                }
+            };
+            (0..=100).map(state).collect()
         };
-        let states = (0..=100).map(state).collect();
-        MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states }])
+        MotionDistribution::new((0..N).map(draw).collect(), 101)
     }
 
     fn sum(map: &DensityMap) -> f64 {
@@ -180,8 +189,12 @@ mod tests {
     #[test]
     fn regions_of_a_round_distribution_are_circles_about_its_mean() {
         let map = DensityTask::new(&motion(), [1.0, 1.0]).on_cpu();
+        let position = motion().position(100);
+        let [part] = position.parts() else { panic!("{} parts", position.parts().len()) };
+        let std_m = part.covariance[0].sqrt();
+        assert!((0.4..0.6).contains(&std_m), "{std_m}");
         for region in &map.regions {
-            let expected_m = 0.5 * (-2.0 * (1.0 - region.level).ln()).sqrt();
+            let expected_m = std_m * (-2.0 * (1.0 - region.level).ln()).sqrt();
             let [outline] = &region.outlines[..] else { panic!("{} parts", region.outlines.len()) };
             for [x_m, y_m] in outline {
                 let radius_m = (x_m - 10.0).hypot(*y_m);

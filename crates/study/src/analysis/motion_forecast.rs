@@ -1,6 +1,5 @@
-//! Forecast of the motion of the struck vehicle with its uncertainty: the distribution of the
-//! impact force, or a given force, is propagated through the response network to a distribution of
-//! the motion.
+//! Forecast of the motion of the struck vehicle with its uncertainty: motions that the response network
+//! draws under forces of a distribution, or under a given one.
 //!
 //! The forecast consists of whole motions, at least
 //! [`LEAST_MOTIONS`](impactlab_networks::response::LEAST_MOTIONS) of them. Curves drawn from the
@@ -74,8 +73,9 @@ pub struct MotionForecast {
     /// The path with the latent factors of the model at zero ([`Predictor::central_path`]),
     /// averaged over the force curves.
     pub central: Vec<VehicleState<f64>>,
-    /// The path with the latent factors at zero in each draw, from first contact on: the forces and
-    /// the vehicles take turns. Positions of the CG and headings at intervals of [`STEP_S`].
+    /// The path with the latent factors at zero under each force, or of each vehicle where these are more:
+    /// they take turns. Of both vehicles the paths of the draws. Positions of the CG and headings from first
+    /// contact on, at intervals of [`STEP_S`].
     pub paths: Vec<Vec<Pose>>,
     /// Force histories with which the motions were computed; the axes are those in which they were
     /// given.
@@ -104,11 +104,11 @@ pub struct MotionForecast {
 /// State of the vehicle at rest, or at the end of the forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MotionOutcome {
-    /// Time from the start of the impact at which the vehicle comes to rest, or duration of the
-    /// forecast, s.
+    /// Time from the start of the impact since which the last draw that comes to rest is at rest, or
+    /// duration of the forecast, s.
     pub time_s: f64,
-    /// Whether the vehicle comes to rest: after the end of the force, speed and yaw rate fall below
-    /// [`REST_SPEED_M_S`](impactlab_core::vehicle::REST_SPEED_M_S) and
+    /// Whether the vehicle comes to rest in 95 % of the draws: after the end of the force, speed and yaw rate
+    /// fall below [`REST_SPEED_M_S`](impactlab_core::vehicle::REST_SPEED_M_S) and
     /// [`REST_YAW_RATE_RAD_S`](impactlab_core::vehicle::REST_YAW_RATE_RAD_S) and stay there to the end of the
     /// forecast.
     pub is_at_rest: bool,
@@ -119,9 +119,9 @@ pub struct MotionOutcome {
     /// Change of heading since the start of the impact, rad, positive to the left. It is not
     /// wrapped: a full turn counts as 2π.
     pub heading_change_rad: Estimate,
-    /// Speed of the CG, m/s: mean over the central paths under each force.
+    /// Speed of the CG, m/s: mean over the draws.
     pub speed_m_s: f64,
-    /// Yaw rate, rad/s, positive to the left: mean over the central paths under each force.
+    /// Yaw rate, rad/s, positive to the left: mean over the draws.
     pub yaw_rate_rad_s: f64,
     /// Area of the smallest region that holds the position with a probability of 90 %, m²; none after a
     /// second contact, which is not computed.
@@ -228,7 +228,8 @@ pub fn forecast_collision(
 
 /// Forecast of the motion after given forces, which are equally likely.
 ///
-/// The motions take forces and drawn vehicles in turn: motion i has force and vehicle i mod their number.
+/// The motions take forces and drawn vehicles in turn: motion i has force and vehicle p mod their numbers,
+/// where p is i mod the larger of these.
 ///
 /// # Errors
 /// [`MotionForecastError::OutOfRange`] for a duration outside [`FORECAST_DURATION`] or
@@ -355,6 +356,7 @@ mod tests {
     use std::ops::ControlFlow;
 
     use super::*;
+    use crate::analysis::MotionBands;
     use crate::{Event, ForceSource, Library, MotionSource, PredictMotionRequest, Question};
     use impactlab_core::data::Sampling;
     use impactlab_core::vehicle::Preset;
@@ -405,6 +407,15 @@ mod tests {
             assert!((many - few).abs() < 0.37 * std, "{axis}: {few} {many}, deviation {std}");
             assert!((of_few / std - 1.0).abs() < 0.3, "{axis}: deviations {of_few}, {std}");
         }
+    }
+
+    #[test]
+    fn bands_end_with_the_intervals_of_the_outcome() {
+        let MotionForecast { distribution, outcome, .. } = pushed(5);
+        let bands = MotionBands::new(&distribution, 50);
+        let [x_m, y_m, ..] = *bands.intervals.last().unwrap();
+        assert_eq!(x_m, [outcome.x_m.ninety(), outcome.x_m.half()]);
+        assert_eq!(y_m, [outcome.y_m.ninety(), outcome.y_m.half()]);
     }
 
     #[test]

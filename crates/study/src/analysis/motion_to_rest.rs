@@ -1,21 +1,20 @@
 //! The forecast of a motion: draws of whole motions over forces, vehicles and what the response network
 //! leaves uncertain, each followed until the vehicle stands or the time is over.
 //!
-//! The distribution over time is that of the draws: those that end near each other make a component,
-//! with their mean and covariance at each instant. A vehicle that has come to rest stays there.
+//! The distribution over time is that of the draws. A vehicle that has come to rest stays there.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
 
-use crate::analysis::rest_outcome::{SHARE_AT_REST, poses};
+use crate::analysis::rest_outcome::SHARE_AT_REST;
 use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
-use impactlab_core::data::{ForceHistory, contact_interval};
+use impactlab_core::data::ForceHistory;
 use impactlab_core::units::Estimate;
-use impactlab_core::vehicle::{Pace, VehicleState, rest_instant};
+use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{
     Applicability, LEAST_MOTIONS, MotionDistribution, Predictor, RESISTANCE_SCATTER, RestSearch,
-    STEP_S, SettledMotion, SettledMotions, weighted_mean,
+    STEP_S, SettledMotion, SettledMotions,
 };
 
 /// What a motion is forecast from.
@@ -57,6 +56,7 @@ impl ToRest<'_> {
 
     /// Follows all draws; `None` where a motion is not finite.
     pub(super) fn settle(&self) -> Option<Settled> {
+        let counts = [self.forces.len(), self.predictors.len()];
         let n_parts = self.n_parts();
         let parts: Option<Vec<Part>> =
             (0..n_parts).into_par_iter().map(|part| self.part(part, n_parts)).collect();
@@ -78,42 +78,11 @@ impl ToRest<'_> {
             let last = *path.last()?;
             path.resize(n_instants, last);
         }
-        let ends: Option<Vec<MotionEnd>> = draws.iter().map(end_of).collect();
-        let ends = ends?;
-        let (outcome, rest) = match self.lasts_to_limit {
-            true => (self.timed_outcome(&draws, &paths)?, None),
-            false => {
-                let rest = RestOutcome::from_ends(&ends, self.limit_s)?;
-                let start_rad = self.struck.initial.yaw_rad;
-                (outcome(&ends, &rest, n_parts, n_instants, start_rad), Some(rest))
-            }
-        };
-        let distribution = distribution(&draws, &ends, n_instants);
+        let start_rad = self.struck.initial.yaw_rad;
+        let SettledDraws { distribution, outcome, rest } =
+            SettledDraws::new(draws, counts, n_instants, self.limit_s, start_rad)?;
+        let rest = Some(rest).filter(|_| !self.lasts_to_limit);
         Some(Settled { distribution, paths, outcome, rest, applicabilities })
-    }
-
-    /// The outcome at the end of the time, or where the vehicle has come to rest in the mean of the central
-    /// paths.
-    fn timed_outcome(
-        &self,
-        draws: &[SettledMotion],
-        paths: &[Vec<VehicleState<f64>>],
-    ) -> Option<MotionOutcome> {
-        let pace = Pace::mean_of(paths);
-        let force_end_s = self.forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
-        let rest = rest_instant(&pace, STEP_S, force_end_s.fold(0.0, f64::max));
-        let at = rest.unwrap_or(pace.len().checked_sub(1)?);
-        let ends: Option<Vec<MotionEnd>> = draws.iter().map(|draw| end_at(draw, at)).collect();
-        let ends = ends?;
-        let place = RestOutcome::from_ends(&ends, self.limit_s)?;
-        let weight = 1.0 / paths.len().max(1) as f64;
-        let central = weighted_mean(paths.iter().filter_map(|path| Some((weight, path.get(at)?))));
-        Some(MotionOutcome {
-            is_at_rest: rest.is_some(),
-            speed_m_s: pace.get(at)?.speed_m_s,
-            yaw_rate_rad_s: central.yaw_rate_rad_s,
-            ..outcome(&ends, &place, self.n_parts(), at + 1, self.struck.initial.yaw_rad)
-        })
     }
 
     fn part(&self, part: usize, n_parts: usize) -> Option<Part> {
@@ -129,10 +98,10 @@ impl ToRest<'_> {
             },
         };
         let numbers: Vec<usize> = (part..LEAST_MOTIONS.max(n_parts)).step_by(n_parts).collect();
-        let SettledMotions { paths, draws } =
+        let SettledMotions { central, draws } =
             predictor.settled(initial, &inputs, &numbers, &search);
         let applicability = predictor.applicability(initial, &inputs);
-        Some(Part { path: mean_path(&paths), draws, applicability })
+        Some(Part { path: central, draws, applicability })
     }
 }
 
@@ -146,11 +115,13 @@ pub(super) struct SettledDraws {
 impl SettledDraws {
     /// `None` without draws, or where a motion is not finite.
     ///
+    /// - `counts`: forces and vehicles, which take turns, see [`MonteCarloError::from_parts`];
     /// - `n_instants`: of the distribution;
     /// - `limit_s`: how long the motions were followed at the most;
     /// - `start_rad`: heading at the start.
     pub(super) fn new(
-        draws: &[SettledMotion],
+        draws: Vec<SettledMotion>,
+        counts: [usize; 2],
         n_instants: usize,
         limit_s: f64,
         start_rad: f64,
@@ -158,42 +129,22 @@ impl SettledDraws {
         let ends: Option<Vec<MotionEnd>> = draws.iter().map(end_of).collect();
         let ends = ends?;
         let rest = RestOutcome::from_ends(&ends, limit_s)?;
-        let outcome = outcome(&ends, &rest, ends.len(), n_instants, start_rad);
-        Some(Self { distribution: distribution(draws, &ends, n_instants), outcome, rest })
+        let outcome = outcome(&ends, &rest, counts, n_instants, start_rad);
+        let states = draws.into_iter().map(|draw| draw.states).collect();
+        Some(Self { distribution: MotionDistribution::new(states, n_instants), outcome, rest })
     }
-}
-
-/// The state of a motion at an instant, at rest after its end.
-fn state_at(motion: &SettledMotion, instant: usize) -> Option<&VehicleState<f64>> {
-    motion.states.get(instant).or(motion.states.last())
-}
-
-/// Mean over the components, which come to rest at different times.
-fn mean_path(components: &[SettledMotion]) -> Vec<VehicleState<f64>> {
-    let n_instants = components.iter().map(|motion| motion.states.len()).max().unwrap_or(0);
-    let weight = 1.0 / components.len().max(1) as f64;
-    let at = |instant| {
-        let states = components.iter().filter_map(|motion| state_at(motion, instant));
-        weighted_mean(states.map(|state| (weight, state)))
-    };
-    (0..n_instants).map(at).collect()
 }
 
 /// Where a motion ends; `None` if it is not finite.
 fn end_of(motion: &SettledMotion) -> Option<MotionEnd> {
-    end_at(motion, usize::MAX)
-}
-
-/// Where a motion is at an instant, or where it has ended before; `None` if that is not finite.
-fn end_at(motion: &SettledMotion, instant: usize) -> Option<MotionEnd> {
     let last = motion.states.len().checked_sub(1)?;
-    let at = instant.min(motion.rest.unwrap_or(last));
+    let at = motion.rest.unwrap_or(last).min(last);
     let state = motion.states.get(at)?;
     let way = motion.states.get(..=at)?.windows(2);
     let distance_m =
         way.map(|pair| (pair[1].x_m - pair[0].x_m).hypot(pair[1].y_m - pair[0].y_m)).sum();
     let end = MotionEnd {
-        is_at_rest: motion.rest.is_some_and(|rest| rest <= at),
+        is_at_rest: motion.rest.is_some(),
         time_s: at as f64 * STEP_S,
         distance_m,
         x_m: state.x_m,
@@ -206,24 +157,13 @@ fn end_at(motion: &SettledMotion, instant: usize) -> Option<MotionEnd> {
     (is_finite && end.distance_m.is_finite()).then_some(end)
 }
 
-/// The draws as a mixture.
-fn distribution(
-    draws: &[SettledMotion],
-    ends: &[MotionEnd],
-    n_instants: usize,
-) -> MotionDistribution {
-    let states: Vec<&[VehicleState<f64>]> =
-        draws.iter().map(|draw| draw.states.as_slice()).collect();
-    MotionDistribution::from_draws(&states, &poses(ends), n_instants)
-}
-
-/// The end of the forecast, over the draws.
+/// The end of the forecast, over the draws: where nearly all are at rest, the last of them since its time.
 ///
-/// - `n_parts`: forces and vehicles, which take turns in the draws.
+/// - `counts`: forces and vehicles, which take turns in the draws.
 fn outcome(
     ends: &[MotionEnd],
     rest: &RestOutcome,
-    n_parts: usize,
+    counts: [usize; 2],
     n_instants: usize,
     start_rad: f64,
 ) -> MotionOutcome {
@@ -234,9 +174,14 @@ fn outcome(
     let mean = |quantity: fn(&MotionEnd) -> f64| {
         ends.iter().map(quantity).sum::<f64>() / ends.len() as f64
     };
+    let is_at_rest = rest.share_at_rest >= SHARE_AT_REST;
+    let rests_s = ends.iter().filter(|end| end.is_at_rest).map(|end| end.time_s);
     MotionOutcome {
-        time_s: n_instants.saturating_sub(1) as f64 * STEP_S,
-        is_at_rest: rest.share_at_rest >= SHARE_AT_REST,
+        time_s: match is_at_rest {
+            true => rests_s.fold(0.0, f64::max),
+            false => n_instants.saturating_sub(1) as f64 * STEP_S,
+        },
+        is_at_rest,
         x_m: rest.x_m.clone(),
         y_m: rest.y_m.clone(),
         p_quarter_turn: share_of(FRAC_PI_2),
@@ -245,27 +190,107 @@ fn outcome(
         speed_m_s: mean(|end| end.speed_m_s),
         yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s),
         region_90_m2: rest.region_90_m2,
-        monte_carlo: MonteCarloError::from_parts(ends, n_parts, rest.limit_s),
+        monte_carlo: MonteCarloError::from_parts(ends, counts, rest.limit_s),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::{MotionForecast, MotionForecastSettings, forecast_forces};
+    use impactlab_core::data::{ForceAxes, Sampling};
+    use impactlab_core::vehicle::{ContactPoint, Controls, Preset, REST_DURATION_S};
+    use impactlab_networks::shipped::ModelSource;
+
+    /// A car that rolls out at 1 m/s, hardly struck.
+    fn rolling(duration_s: f64, until_rest: bool) -> MotionForecast {
+        let force = ForceHistory {
+            axes: ForceAxes::World,
+            sampling: Sampling::Instant,
+            time_s: vec![0.0, 0.05, 0.1],
+            fx_n: vec![0.0; 3],
+            fy_n: vec![0.0, 1e3, 0.0],
+            mz_n_m: None,
+        };
+        let struck = StruckVehicle {
+            vehicle: Preset::Reference.parameters(),
+            initial: VehicleState::driving_straight(1.0),
+            contact: ContactPoint { x_body_m: 0.0, y_body_m: -0.8, height_m: 0.5 },
+            controls: Controls::default(),
+            friction_zones: Vec::new(),
+        };
+        let settings = MotionForecastSettings {
+            n_curves: 1,
+            n_vehicles: 0,
+            duration_s,
+            until_rest,
+            road: None,
+            seed: 1,
+        };
+        let model = ModelSource::Shipped.response_model().unwrap();
+        forecast_forces(&[force], &model, &struck, &settings).unwrap()
+    }
 
     #[test]
-    fn a_motion_at_an_instant_is_at_rest_if_it_has_come_to_rest_by_then() {
-        let state = |i: usize| VehicleState { x_m: i.min(3) as f64, ..VehicleState::default() };
-        let motion = SettledMotion { states: (0..6).map(state).collect(), rest: Some(3) };
-        let [before, after] = [2, 5].map(|at| end_at(&motion, at).unwrap());
-        assert_eq!((before.is_at_rest, before.x_m, before.distance_m), (false, 2.0, 2.0));
-        assert_eq!((after.is_at_rest, after.x_m, after.time_s), (true, 3.0, 3.0 * STEP_S));
-        assert_eq!(end_of(&motion), Some(after));
-        let moving = SettledMotion { rest: None, ..motion };
-        assert_eq!(
-            end_at(&moving, 9).map(|end| (end.is_at_rest, end.time_s)),
-            Some((false, 5.0 * STEP_S))
-        );
+    fn a_timed_forecast_is_not_at_rest_while_a_quarter_of_its_draws_moves() {
+        let to_rest = rolling(100.0, true);
+        let rest = to_rest.rest.as_ref().unwrap();
+        assert!(rest.share_at_rest > 0.95, "{rest:?}");
+        // A quarter of the draws still moves then, and most do not.
+        let [_, late_s] = rest.time_s.interval(0.5).unwrap();
+        let duration_s = ((late_s + REST_DURATION_S) / STEP_S).round() * STEP_S;
+        let timed = rolling(duration_s, false);
+        assert!(!timed.outcome.is_at_rest, "{:?}", timed.outcome);
+        assert!((timed.outcome.time_s - duration_s).abs() < 1e-9, "{:?}", timed.outcome);
+        // Both move for two seconds, on the same path.
+        for (one, other) in timed.central.iter().zip(&to_rest.central).take(200) {
+            for (a, b) in one.to_array().into_iter().zip(other.to_array()) {
+                assert!((a - b).abs() < 1e-9, "{one:?} {other:?}");
+            }
+        }
+        assert!(timed.outcome.time_s > 2.0 && to_rest.outcome.time_s > late_s);
+    }
+
+    /// A motion along X with its heading at the end, which rests after 3 steps if it does.
+    fn motion(end_m: f64, yaw_rad: f64, rest: Option<usize>) -> SettledMotion {
+        let state = |i: usize| VehicleState {
+            x_m: end_m * i.min(rest.unwrap_or(5)) as f64,
+            yaw_rad: yaw_rad * i as f64 / 5.0,
+            vx_body_m_s: if rest.is_some() { 0.0 } else { 8.0 },
+            ..VehicleState::default()
+        };
+        SettledMotion { states: (0..6).map(state).collect(), rest }
+    }
+
+    #[test]
+    fn a_motion_ends_where_it_comes_to_rest() {
+        let end = |rest| end_of(&motion(1.0, 0.0, rest)).unwrap();
+        let [rests, moves] = [Some(3), None].map(end);
+        assert_eq!((rests.is_at_rest, rests.x_m, rests.distance_m), (true, 3.0, 3.0));
+        assert_eq!((moves.is_at_rest, moves.x_m, moves.distance_m), (false, 5.0, 5.0));
+        assert_eq!([rests, moves].map(|end| end.time_s), [3.0 * STEP_S, 5.0 * STEP_S]);
+    }
+
+    #[test]
+    fn draws_that_move_on_after_the_others_rest_end_where_they_are_at_the_end_of_the_time() {
+        let draw = |i: usize| match i % 5 {
+            0 => motion(2.0, 3.0, None),
+            _ => motion(1.0 + 0.01 * i as f64, 0.0, Some(3)),
+        };
+        let draws: Vec<SettledMotion> = (0..100).map(draw).collect();
+        let outcome = SettledDraws::new(draws, [1, 1], 6, 0.05, 0.0).unwrap().outcome;
+        assert_eq!((outcome.is_at_rest, outcome.time_s), (false, 5.0 * STEP_S));
+        assert!((outcome.p_quarter_turn - 0.2).abs() < 1e-12, "{outcome:?}");
+        assert!((outcome.speed_m_s - 1.6).abs() < 1e-12, "{outcome:?}");
+        assert!(outcome.x_m.ninety()[1] > 9.9, "{outcome:?}");
+    }
+
+    #[test]
+    fn a_forecast_is_at_rest_since_the_last_draw_is() {
+        let draw = |i: usize| motion(1.0 + 0.01 * i as f64, 0.0, Some(if i == 7 { 4 } else { 3 }));
+        let draws: Vec<SettledMotion> = (0..100).map(draw).collect();
+        let outcome = SettledDraws::new(draws, [1, 1], 400, 4.0, 0.0).unwrap().outcome;
+        assert_eq!((outcome.is_at_rest, outcome.time_s), (true, 4.0 * STEP_S));
     }
 
     #[test]
@@ -282,7 +307,7 @@ mod tests {
         };
         let ends: Vec<MotionEnd> = (1..=100).map(end).collect();
         let rest = RestOutcome::from_ends(&ends, 4.0).unwrap();
-        let yaw_rate_rad_s = outcome(&ends, &rest, ends.len(), 101, 0.0).yaw_rate_rad_s;
+        let yaw_rate_rad_s = outcome(&ends, &rest, [1, 1], 101, 0.0).yaw_rate_rad_s;
         assert!((yaw_rate_rad_s + 0.0505).abs() < 1e-9, "{yaw_rate_rad_s}");
     }
 }

@@ -281,11 +281,7 @@ fn one_vehicle(
     };
     let last = *central.last()?;
     central.resize(n_instants, last);
-    let SettledDraws { distribution, mut outcome, rest } =
-        SettledDraws::new(&draws, n_instants, duration_s, start_rad)?;
-    if outcome.is_at_rest {
-        let rest_s = draws.iter().filter_map(|draw| draw.rest).max();
-        outcome.time_s = rest_s.map_or(outcome.time_s, |at| at as f64 * STEP_S);
-    }
+    let SettledDraws { distribution, outcome, rest } =
+        SettledDraws::new(draws, [1, 1], n_instants, duration_s, start_rad)?;
     Some(OneVehicle { distribution, central, outcome, rest: until_rest.then_some(rest) })
 }

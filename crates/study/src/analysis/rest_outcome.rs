@@ -108,7 +108,7 @@ impl RestOutcome {
 }
 
 /// Where draws end: X, Y, m, and heading, rad.
-pub(super) fn poses(ends: &[MotionEnd]) -> Vec<[f64; 3]> {
+fn poses(ends: &[MotionEnd]) -> Vec<[f64; 3]> {
     ends.iter().map(|end| [end.x_m, end.y_m, end.yaw_rad]).collect()
 }
 

@@ -9,6 +9,7 @@
 
 use rayon::prelude::*;
 
+use crate::analysis::pair_forecast::opposite;
 use crate::analysis::{MotionForecast, StruckVehicle, VehicleTrack};
 use impactlab_core::collision::{Footprint, Pose, SecondContact};
 use impactlab_core::data::{Channel, ForceAxes, ForceHistory, TimeSeries, contact_interval};
@@ -154,14 +155,7 @@ fn simulated(
 
 /// The force on the striking vehicle; `None` if its axes turn with the struck one.
 fn reaction(force: &ForceHistory) -> Option<ForceHistory> {
-    let opposite = |component: &[f64]| component.iter().map(|value| -value).collect();
-    let [fx_n, fy_n] = [&force.fx_n, &force.fy_n].map(|component| opposite(component));
-    (force.axes == ForceAxes::World).then(|| ForceHistory {
-        fx_n,
-        fy_n,
-        mz_n_m: None,
-        ..force.clone()
-    })
+    (force.axes == ForceAxes::World).then(|| opposite(force))
 }
 
 /// What the striking vehicle does under a force that acts where the vehicles touch.

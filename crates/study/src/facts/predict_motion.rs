@@ -162,16 +162,20 @@ impl PredictMotionReport {
         sensitivity(&self.sensitivity)
     }
 
-    /// A probability over the forces and vehicles that were drawn. Draws under one force and of one
-    /// vehicle are not independent and count once, unless there is but one.
+    /// A probability over the draws. Those under one force, or of one vehicle, are not independent and
+    /// count once, unless there is but one.
     pub(super) fn chance(&self, chance: f64) -> Value {
-        let n = match (self.n_forces.max(self.n_vehicles), &self.rest) {
-            (1, None) if self.striking.is_some() => return Value::Chance(chance, None),
-            (1, None) => LEAST_MOTIONS,
-            (1, Some(rest)) => rest.n_draws,
-            (n, _) => n,
+        let n = match (&self.contacts, self.n_drawn()) {
+            (Some(contacts), _) => contacts.n_draws,
+            (None, Some(n_drawn)) => n_drawn,
+            (None, None) => LEAST_MOTIONS,
         };
         Value::Chance(chance, Some(share_standard_error(chance, n as f64)))
+    }
+
+    /// How many forces or vehicles were drawn, whichever are fewer; none where there is one of each.
+    fn n_drawn(&self) -> Option<usize> {
+        [self.n_forces, self.n_vehicles].into_iter().filter(|n| *n > 1).min()
     }
 
     fn motion(&self) -> Vec<Fact> {
@@ -222,5 +226,23 @@ impl PredictMotionReport {
             facts.push(Fact::new(Term::Applicability, Value::Share(self.applicability)));
         }
         facts
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::answer::tests::forecast;
+
+    #[test]
+    fn many_vehicles_under_few_forces_do_not_make_a_chance_surer() {
+        let report = PredictMotionReport { contacts: None, ..forecast(None) };
+        let with = |n_forces, n_vehicles| {
+            PredictMotionReport { n_forces, n_vehicles, ..report.clone() }.chance(0.3)
+        };
+        let of = |n: usize| Value::Chance(0.3, Some(share_standard_error(0.3, n as f64)));
+        assert_eq!([with(10, 32), with(10, 0)], [of(10), of(10)]);
+        // A given force is one, and is known.
+        assert_eq!([with(1, 32), with(1, 0)], [of(32), of(LEAST_MOTIONS)]);
     }
 }

@@ -352,10 +352,10 @@ terms! {
     StillMovingAfter: "still moving after", "noch in Bewegung nach";
     HeadingChange: "change of heading", "Änderung des Gierwinkels",
         "Since the impact, to the left; goes on beyond a turn";
-    SpeedAtEnd: "speed at the end, mean of the central paths",
-        "Geschwindigkeit am Ende, Mittel der mittleren Bahnen";
-    YawRateAtEnd: "yaw rate at the end, mean of the central paths",
-        "Gierrate am Ende, Mittel der mittleren Bahnen", "Positive to the left";
+    SpeedAtEnd: "speed at the end, mean of the draws",
+        "Geschwindigkeit am Ende, Mittel der Ziehungen";
+    YawRateAtEnd: "yaw rate at the end, mean of the draws",
+        "Gierrate am Ende, Mittel der Ziehungen", "Positive to the left";
     QuarterTurn: "probability of a quarter turn or more",
         "Wahrscheinlichkeit einer Vierteldrehung oder mehr";
     HalfTurn: "probability of a half turn or more", "Wahrscheinlichkeit einer halben Drehung oder mehr";

@@ -52,6 +52,8 @@ fn factors_fact(term: Term, factors: &VarianceFactors) -> Fact {
         ("latent factors", factors.shared),
         ("single instants", factors.single),
         ("duration", factors.duration),
+        ("peaks", factors.peak.scale),
+        ("spread of peaks", factors.peak.spread),
     ];
     Fact::new(term, Value::named(factors.map(|(name, factor)| (name, Value::Fixed(factor, 2)))))
 }

@@ -73,7 +73,6 @@ pub(super) fn forecast_still(
             density: Some(density),
             n_ghosts: N_GHOSTS,
             until_s: report.known_until_s(),
-            seed: request.seed,
         },
     );
     let (scene, note) = on_ground(scene, request.motion.site.as_deref(), context);

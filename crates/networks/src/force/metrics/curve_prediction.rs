@@ -1,6 +1,10 @@
 //! What any force model, network, regression or baseline, predicts for a case.
 
-use impactlab_core::uncertainty::{CurveMixture, ForceCurve};
+use impactlab_core::numerics::random_stream;
+use impactlab_core::uncertainty::{CurveMixture, CurveQuantities, ForceCurve};
+
+/// Number of curves that are drawn for the median of their peaks.
+const N_PEAKS: usize = 500;
 
 /// Point estimates and, if the model has one, a distribution, in canonical axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,11 +30,13 @@ impl CurvePrediction {
 
     /// The prediction of a distribution, with point estimates from a part of it.
     ///
-    /// Curve, impulse and peak are those of the mean of `likely`, and the duration is its median. The
-    /// median of drawn peaks would be too large, since drawn curves are rougher than recorded ones.
+    /// Curve and impulse are those of the mean of `likely`; peak and duration are its medians, as they
+    /// are told.
     pub fn from_mixture(mixture: CurveMixture, likely: &CurveMixture) -> Self {
         let mut prediction = Self::from_curve(likely.mean());
         prediction.curve.duration_s = likely.duration_s().quantile(0.5);
+        let (_, drawn) = likely.sample_quantities(N_PEAKS, &mut random_stream(0, "peaks", 0));
+        prediction.peak_n = CurveQuantities::median(&drawn.peak_n).unwrap_or(prediction.peak_n);
         prediction.mixture = Some(mixture);
         prediction
     }

@@ -88,8 +88,7 @@ impl ProbabilisticScores {
         let mut rng = ChaCha8Rng::seed_from_u64(settings.seed);
         rng.set_stream(stream);
         let nll_nats = -mixture.log_density(&case.curve)?;
-        let draws = mixture.sample(settings.n_samples, &mut rng);
-        let quantities = CurveQuantities::from_curves(&draws);
+        let (draws, quantities) = mixture.sample_quantities(settings.n_samples, &mut rng);
         let [px, py] = case.impulse_n_s;
         let (impulse, duration_s) = (px.hypot(py), case.curve.duration_s);
         let impulses = quantities.impulse_magnitude_n_s();
@@ -182,7 +181,7 @@ mod tests {
 
     use super::*;
     use crate::force::input::shipped;
-    use impactlab_core::uncertainty::{CurveComponent, ForceCurve};
+    use impactlab_core::uncertainty::{CurveComponent, ForceCurve, PeakFactors};
 
     /// A coherent normal distribution about a curve.
     fn about(curve: &ForceCurve) -> CurveMixture {
@@ -193,7 +192,14 @@ mod tests {
         let mut variance = vec![4e4; n];
         variance[n - 1] = 1e-4;
         let lag_correlation = 0.0;
-        let component = CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation };
+        let component = CurveComponent {
+            weight: 1.0,
+            mean,
+            factors,
+            variance,
+            lag_correlation,
+            peak: PeakFactors::default(),
+        };
         CurveMixture::new(vec![component]).unwrap()
     }
 

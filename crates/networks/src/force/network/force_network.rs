@@ -33,7 +33,9 @@ use crate::nn::{
     Activation, Attention, AttentionConfig, Init, Linear, Mlp, MultiScaleEncoder, Parameters,
     positional_encoding,
 };
-use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent};
+use impactlab_core::uncertainty::{
+    CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent, PeakFactors,
+};
 
 /// Time over which the curve fades out at the end of the contact, s.
 const FADE_S: f64 = 0.006;
@@ -147,6 +149,7 @@ impl NetworkOutput {
                 variance: scaled(&variance[i][j], 2),
                 factors: DMatrix::from_fn(n_values, q, |v, f| factors[first + v * q + f] * unit(v)),
                 lag_correlation: lag_correlation[i][j],
+                peak: PeakFactors::default(),
             }
         };
         let of_case = |(i, centre): (usize, &CentreCurve)| {

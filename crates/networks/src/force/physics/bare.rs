@@ -35,7 +35,9 @@ use impactlab_core::collision::{
     ContactSurface, Impact, ImpactError, PulseShape, Regime, contact_work_j,
 };
 use impactlab_core::numerics::normal_quantile;
-use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent, ForceCurve};
+use impactlab_core::uncertainty::{
+    CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent, ForceCurve, PeakFactors,
+};
 
 /// Root mean square of ζ_P, the error of ln |P| of the momentum solution.
 pub const IMPULSE_LOG_STD: f64 = 0.26;
@@ -202,6 +204,7 @@ fn component(curve: &ForceCurve, weight: f64) -> CurveComponent {
         factors: DMatrix::zeros(variance.len(), 0),
         variance,
         lag_correlation: RIPPLE_CORRELATION,
+        peak: PeakFactors::default(),
     }
 }
 

@@ -331,7 +331,7 @@ mod tests {
     use candle_core::{DType, Device};
 
     use super::*;
-    use impactlab_core::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
+    use impactlab_core::uncertainty::{CurveComponent, CurveMixture, ForceCurve, PeakFactors};
 
     /// A small output with two components, two factors and three instants.
     fn output() -> (NetworkOutput, Tensor) {
@@ -368,6 +368,7 @@ mod tests {
             variance: rows(&output.variance)[k].clone(),
             lag_correlation: output.lag_correlation.to_vec2::<f64>().unwrap()[0][k],
             factors: nalgebra::DMatrix::from_fn(7, 2, |i, j| factors[k][i][j]),
+            peak: PeakFactors::default(),
         });
         let mixture = CurveMixture::new(components.collect()).unwrap();
         let curve = ForceCurve::from_values(&values.to_vec2::<f64>().unwrap()[0]);

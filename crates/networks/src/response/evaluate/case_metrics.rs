@@ -11,6 +11,7 @@ use crate::response::evaluate::motion_model::PredictedMotion;
 use crate::response::{MotionDistribution, ResponseCase, STEP_S, average_error_m, motion_series};
 use impactlab_core::compare::{MotionError, physical_violations};
 use impactlab_core::data::{finite_or_null, null_as_nan};
+use impactlab_core::uncertainty::sample_crps;
 use impactlab_core::vehicle::{REST_SPEED_M_S, REST_YAW_RATE_RAD_S, VehicleState};
 
 /// Every how many steps the regions are looked at: 0.1 s.
@@ -19,8 +20,6 @@ const STRIDE: usize = 10;
 const COMMON_STEPS: usize = 400;
 /// How long after the recorded rest a prediction may go on until it rests too, s.
 const REST_SEARCH_S: f64 = 10.0;
-/// Draws behind an energy score.
-const N_DRAWS: usize = 200;
 
 /// How often the recorded positions lie in the predicted regions, for one model on one trajectory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -56,7 +55,7 @@ pub struct MotionCoverage {
 /// Metrics of one model on one trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MotionCaseMetrics {
-    /// Errors of the mean path; infinite where it is not finite.
+    /// Errors of the central path; infinite where it is not finite.
     #[serde(flatten)]
     pub error: MotionError,
     /// Average error over the first 4 s, or over the whole of a shorter recording, m.
@@ -70,7 +69,8 @@ pub struct MotionCaseMetrics {
     /// Distance between the recorded and the predicted rest position, m; `None` where the recording
     /// does not end at rest.
     pub rest_error_m: Option<f64>,
-    /// Instants at which kinetic energy grows with no force on the vehicle, over all its paths.
+    /// Instants at which kinetic energy grows with no force on the vehicle, over the paths of the
+    /// components of the network, without the noise of its draws.
     pub violations: usize,
     /// Time for a step of the whole answer, µs.
     pub time_per_step_us: f64,
@@ -168,15 +168,13 @@ fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> MotionCov
         sum.path_50 += f64::from(u8::from(level <= 0.5));
         sum.path_90 += f64::from(u8::from(level <= 0.9));
         let numbers = [state.x_m, state.y_m, state.yaw_rad];
-        let crps = |axis: usize| {
-            distribution
-                .marginal(at, axis)
-                .map_or(f64::INFINITY, |marginal| marginal.crps(numbers[axis]))
-        };
+        let crps = |axis: usize| sample_crps(&distribution.values(at, axis), numbers[axis]);
+        let places: Vec<[f64; 2]> =
+            distribution.states(at).map(|drawn| [drawn.x_m, drawn.y_m]).collect();
         sum.crps_x_m += crps(0);
         sum.crps_y_m += crps(1);
         sum.crps_yaw_rad += crps(2);
-        sum.energy_score_m += energy_score_m(&position.sample(N_DRAWS, at as u64), point);
+        sum.energy_score_m += energy_score_m(&places, point);
         n += 1.0;
     }
     let end = case.states.last().copied().unwrap_or_default();

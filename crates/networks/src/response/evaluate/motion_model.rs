@@ -41,9 +41,9 @@ pub enum MotionModel {
 /// The motion that a model predicts for a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PredictedMotion {
-    /// Mean path.
+    /// Central path, with every latent factor at zero.
     pub states: Vec<VehicleState<f64>>,
-    /// Paths whose mean it is: those in which mechanics must hold.
+    /// Paths in which mechanics must hold: those of the components, with the latent factors at their means.
     pub paths: Vec<Vec<VehicleState<f64>>>,
     /// The distribution of the motion, if the model predicts one.
     pub distribution: Option<MotionDistribution>,

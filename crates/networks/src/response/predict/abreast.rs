@@ -36,6 +36,8 @@ pub(super) struct FollowedMotion {
     pub states: Vec<VehicleState<f64>>,
     /// Mean probability of the component over the inputs.
     pub weight: f64,
+    /// Probability of the component at each step, as long as the network has a share in them.
+    pub probabilities: Vec<f64>,
     /// Index of the state in the batch of which the network was last asked.
     place: usize,
     is_moving: bool,
@@ -80,7 +82,24 @@ impl MotionDraw {
 
 impl FollowedMotion {
     fn new(draw: MotionDraw, initial: &VehicleState<f64>) -> Self {
-        Self { draw, states: vec![*initial], weight: 0.0, place: 0, is_moving: true }
+        Self {
+            draw,
+            states: vec![*initial],
+            weight: 0.0,
+            probabilities: Vec::new(),
+            place: 0,
+            is_moving: true,
+        }
+    }
+
+    /// One that was not followed.
+    #[cfg(test)]
+    pub(super) fn of_states(
+        draw: MotionDraw,
+        states: Vec<VehicleState<f64>>,
+        probabilities: Vec<f64>,
+    ) -> Self {
+        Self { draw, states, weight: 0.0, probabilities, place: 0, is_moving: false }
     }
 }
 
@@ -117,7 +136,11 @@ impl Dynamics<'_> {
             self.step_abreast(&mut motions, u, time_s, &mut buffers);
             for motion in motions.iter_mut().filter(|motion| motion.is_moving) {
                 let at = [motion.place, motion.draw.component];
-                motion.weight += self.weight(at, &buffers.batch) / inputs.len() as f64;
+                let probability = self.weight(at, &buffers.batch);
+                motion.weight += probability / inputs.len() as f64;
+                if buffers.batch.has_share() {
+                    motion.probabilities.push(probability);
+                }
                 if let Some(state) = motion.states.last_mut() {
                     motion.draw.add_noise(state, self.noise(at, &buffers.batch));
                 }

@@ -19,7 +19,6 @@ use argmin::solver::neldermead::NelderMead;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use crate::response::predict::CALIBRATION_MOTIONS;
 use crate::response::predict::latents::NAMED_PLACES;
 use crate::response::{LatentScales, N_NAMED_LATENTS, Predictor, ResponseCase, STEP_S};
 use impactlab_core::vehicle::VehicleState;
@@ -40,7 +39,7 @@ const ROBUST_STD: f64 = 3.0;
 const FACTORS: [f64; 11] = [0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0];
 const LEVEL: f64 = 0.9;
 /// A few trajectories hardly hold the rare ones that miss most: of n the regions shall hold a share
-/// of 0.9 + 0.4/n. Checked by cross-validation on training trajectories: 5 of them, 80 to 95 % inside.
+/// of 0.9 + 0.4/n.
 const FEW_CASES: f64 = 0.4;
 
 /// A trajectory, and the model that has not seen it.
@@ -103,11 +102,7 @@ fn observe(unseen: &Unseen<'_>) -> Vec<Observation> {
         unseen.predictor.clone().with_latents(latents)
     };
     let certain = with([0.0; N_NAMED_LATENTS], 0.0).central_path(initial, &case.inputs);
-    let noise = with([0.0; N_NAMED_LATENTS], PROBE_NOISE).forecast_of(
-        initial,
-        &case.inputs,
-        CALIBRATION_MOTIONS,
-    );
+    let noise = with([0.0; N_NAMED_LATENTS], PROBE_NOISE).forecast(initial, &case.inputs);
     // A latent that is one: strengths moved by a probe, all components alike.
     let moved: Vec<Vec<VehicleState<f64>>> = (0..N_NAMED_LATENTS)
         .map(|m| {
@@ -207,7 +202,7 @@ fn factor(unseen: &[Unseen<'_>], scales: LatentScales) -> f64 {
                 let case = unseen.case;
                 let Some(initial) = case.states.first() else { return (0, 0) };
                 let predictor = unseen.predictor.clone().with_latents(widened);
-                let motion = predictor.forecast_of(initial, &case.inputs, CALIBRATION_MOTIONS);
+                let motion = predictor.forecast(initial, &case.inputs);
                 let inside = |at: &usize| {
                     let state = &case.states[*at];
                     motion.position(*at).level_of([state.x_m, state.y_m]) <= LEVEL

@@ -6,7 +6,7 @@ use crate::response::physics::effects::{EffectAmounts, EffectModel};
 use crate::response::physics::features::features_of;
 use crate::response::physics::step::StepModel;
 use crate::response::predict::latents::{Latents, N_LATENTS};
-use crate::response::{N_FEATURES, N_RESIDUAL};
+use crate::response::{Correction, N_FEATURES, N_RESIDUAL};
 use impactlab_core::numerics::Lanes;
 use impactlab_core::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
@@ -24,6 +24,10 @@ pub(crate) struct Dynamics<'a> {
 /// Time over which the remainder of the network fades where a motion goes on for longer than those
 /// that were learned from, s.
 const FADE_S: f64 = 1.0;
+
+/// Largest share of the energy which tires and resistance take that the correction gives back after the
+/// time that was learned from.
+const GIVEN_BACK_SHARE: f64 = 0.5;
 
 /// Largest variance of the noise of a step, (m/s)², (rad/s)². Within what was learned from it is some
 /// 1e-4; in a crash far outside of that, the network's exponential knows no bound.
@@ -94,6 +98,7 @@ impl<'a> Dynamics<'a> {
     }
 
     /// One step at given latent factors.
+    #[cfg(test)]
     pub(crate) fn step(
         &self,
         component: usize,
@@ -106,6 +111,45 @@ impl<'a> Dynamics<'a> {
         let now = self.model.constants.evaluate(x, u);
         let correction = self.correction_at(component, latents, (x, &now), time_s, batch);
         self.network.correction().step_from(&self.model, x, u, &now.derivative, correction)
+    }
+
+    /// One step after what was learned from, at given latent factors. The correction does not keep up the
+    /// motion of a vehicle that nothing drives: of the energy that tires and resistance take it gives back
+    /// [`GIVEN_BACK_SHARE`] at most.
+    pub(crate) fn step_beyond(
+        &self,
+        component: usize,
+        latents: &[f64; N_LATENTS],
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
+        time_s: f64,
+        batch: &mut NetworkBatch,
+    ) -> VehicleState<f64> {
+        let constants = &self.model.constants;
+        let now = constants.evaluate(x, u);
+        let correction = self.correction_at(component, latents, (x, &now), time_s, batch);
+        let kind = self.network.correction();
+        let step = |value| kind.step_from(&self.model, x, u, &now.derivative, value);
+        let mut next = step(correction);
+        if kind == Correction::Acceleration && u.collision.is_none() && !u.is_driven() {
+            // Both ends are looked at and not the powers: what tires take sideways at the beginning of a
+            // step is not what they take over it.
+            let energy_j = |x: &VehicleState<f64>| constants.planar_energy_j(x);
+            let brought_j = |end: &VehicleState<f64>| {
+                energy_j(x) + constants.energy_by_slope_j(x, end).unwrap_or(0.0)
+            };
+            let uncorrected = step([0.0; N_RESIDUAL]);
+            let taken_j = (brought_j(&uncorrected) - energy_j(&uncorrected)).max(0.0);
+            let most_j = brought_j(&next) - (1.0 - GIVEN_BACK_SHARE) * taken_j;
+            let is_j = energy_j(&next);
+            if is_j > most_j {
+                let share = (most_j.max(0.0) / is_j).sqrt();
+                next.vx_body_m_s *= share;
+                next.vy_body_m_s *= share;
+                next.yaw_rate_rad_s *= share;
+            }
+        }
+        next
     }
 
     /// The correction over a step at given latent factors, bounded.

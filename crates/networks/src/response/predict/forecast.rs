@@ -1,8 +1,8 @@
 //! The forecast of a motion: whole motions that are drawn.
 //!
 //! Mean and covariance of a velocity in the axes of the vehicle mean nothing once the vehicle may point
-//! anywhere, and where most motions stay straight they miss those that spin. So forecast, evaluation and
-//! calibration all take what is drawn here.
+//! anywhere, and where most motions stay straight they miss those that spin. So evaluation and calibration
+//! take what is drawn here: as many motions as a forecast for a person has.
 
 use crate::response::{MotionDistribution, Predictor};
 use impactlab_core::vehicle::{VehicleInput, VehicleState};
@@ -10,13 +10,12 @@ use impactlab_core::vehicle::{VehicleInput, VehicleState};
 /// Whole motions of a forecast at the least: the end of a 90 % interval is then uncertain by 1.4 % of
 /// probability.
 pub const LEAST_MOTIONS: usize = 240;
-/// Whole motions of each of the many forecasts of a calibration, which are counted together.
-pub(crate) const CALIBRATION_MOTIONS: usize = 64;
 /// Seed of the draws.
 const SEED: u64 = 0;
 
 impl Predictor {
-    /// The distribution of the motion, of [`LEAST_MOTIONS`] coherent draws.
+    /// The distribution of the motion, of [`LEAST_MOTIONS`] coherent draws. They have the same random
+    /// numbers with every width of the distribution.
     ///
     /// - `inputs`: the input over each step.
     pub fn forecast(
@@ -24,22 +23,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> MotionDistribution {
-        self.forecast_of(initial, inputs, LEAST_MOTIONS)
-    }
-
-    /// The same of so many draws. They have the same random numbers with every width of the distribution.
-    pub(crate) fn forecast_of(
-        &self,
-        initial: &VehicleState<f64>,
-        inputs: &[VehicleInput<f64>],
-        n_draws: usize,
-    ) -> MotionDistribution {
-        let draws = self.sample(initial, inputs, n_draws, SEED);
-        let draws: Vec<&[VehicleState<f64>]> = draws.iter().map(Vec::as_slice).collect();
-        let pose = |state: &VehicleState<f64>| [state.x_m, state.y_m, state.yaw_rad];
-        let ends: Vec<[f64; 3]> =
-            draws.iter().filter_map(|states| states.last()).map(pose).collect();
-        MotionDistribution::from_draws(&draws, &ends, inputs.len() + 1)
+        let draws = self.sample(initial, inputs, LEAST_MOTIONS, SEED);
+        MotionDistribution::new(draws, inputs.len() + 1)
     }
 }
 

@@ -23,15 +23,12 @@ mod forecast;
 #[cfg(test)]
 mod test_motions;
 
-mod path_draws;
-
 mod to_rest;
 
 mod in_contact;
 
-pub use distribution::{ComponentMotion, MotionDistribution, StateDistribution};
+pub use distribution::MotionDistribution;
 pub use domain::{Applicability, MotionDomain, OutsideDomain};
-pub(crate) use forecast::CALIBRATION_MOTIONS;
 pub use forecast::LEAST_MOTIONS;
 pub use in_contact::CoupledDraw;
 pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS, Widths};

@@ -149,7 +149,7 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
     ) -> Vec<ComponentPath> {
         let fitted = self.fitted_to(initial, inputs);
-        fitted.paths_at(initial, inputs, |j| fitted.mean_latents(j))
+        weighted(fitted.components_at(initial, inputs, |j| fitted.mean_latents(j)))
     }
 
     /// Means of the latent factors of a component.
@@ -158,16 +158,16 @@ impl Predictor {
         shares.map(|share| share.mean)
     }
 
-    /// The path of each component at given latent factors.
-    fn paths_at(
+    /// The motion of each component at given latent factors.
+    fn components_at(
         &self,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
         latents: impl Fn(usize) -> [f64; N_LATENTS],
-    ) -> Vec<ComponentPath> {
+    ) -> Vec<FollowedMotion> {
         let draw = |j| MotionDraw::certain(j, latents(j));
         let draws = (0..self.n_components()).map(draw).collect();
-        weighted(self.dynamics().follow(draws, initial, inputs, |_, _, _| true))
+        self.dynamics().follow(draws, initial, inputs, |_, _, _| true)
     }
 
     /// Mean over the components of the paths on which one latent factor is one and the others are zero.
@@ -178,7 +178,7 @@ impl Predictor {
         latent: usize,
     ) -> Vec<VehicleState<f64>> {
         let latents = std::array::from_fn(|m| if m == latent { 1.0 } else { 0.0 });
-        mean_of(&self.paths_at(initial, inputs, |_| latents), inputs.len())
+        central_of(&self.components_at(initial, inputs, |_| latents))
     }
 
     /// The path with every latent factor at zero: the mean over the components.
@@ -192,8 +192,7 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
     ) -> Vec<VehicleState<f64>> {
         let fitted = self.fitted_to(initial, inputs);
-        let paths = fitted.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
-        mean_of(&paths, inputs.len())
+        central_of(&fitted.components_at(initial, inputs, |_| [0.0; N_LATENTS]))
     }
 
     /// Coherent draws: a component, latent factors drawn once, and the noise of each step.
@@ -248,13 +247,25 @@ pub(super) fn weighted(followed: Vec<FollowedMotion>) -> Vec<ComponentPath> {
     followed.into_iter().map(path).collect()
 }
 
-/// Mean of paths of `n_steps` steps.
-fn mean_of(paths: &[ComponentPath], n_steps: usize) -> Vec<VehicleState<f64>> {
-    let at = |i: usize| {
-        let states = paths.iter().filter_map(|path| Some((path.weight, path.states.get(i)?)));
+/// The mean over the components at each instant. A component weighs its mean probability up to then, so
+/// that the path does not depend on how long it is followed; one that has ended stays there.
+pub(super) fn central_of(components: &[FollowedMotion]) -> Vec<VehicleState<f64>> {
+    let n_instants = components.iter().map(|motion| motion.states.len()).max().unwrap_or(0);
+    let mut weights: Vec<f64> = vec![1.0; components.len()];
+    let at = |instant: usize| {
+        for (weight, motion) in weights.iter_mut().zip(components) {
+            let step = instant.checked_sub(1);
+            if let Some(probability) = step.and_then(|step| motion.probabilities.get(step)) {
+                *weight += (probability - *weight) / instant as f64;
+            }
+        }
+        let sum: f64 = weights.iter().sum();
+        let states = components.iter().zip(&weights).filter_map(|(motion, weight)| {
+            Some((weight / sum, motion.states.get(instant).or(motion.states.last())?))
+        });
         weighted_mean(states)
     };
-    (0..=n_steps).map(at).collect()
+    (0..n_instants).map(at).collect()
 }
 
 pub(super) fn normal(rng: &mut ChaCha8Rng) -> f64 {

@@ -5,7 +5,8 @@
 //!
 //! A motion may last longer than those that the network has learned from. From there on its remainder
 //! fades within a second, and physics and effects with their strengths go on: these depend on the state,
-//! not on time. What then decides is the resistance of a car that rolls on, which motions of a few
+//! not on time; nor do they keep up the motion of a car that nothing drives, to which they give back half of
+//! what tires and resistance take at most. What then decides is the resistance of a car that rolls on, which motions of a few
 //! seconds say little about; rolling resistance and air drag are therefore drawn for that time. As long as
 //! the network has a say, motions are followed side by side.
 
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::response::predict::abreast::{FollowedMotion, MotionDraw};
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
-use crate::response::predict::predictor::weighted;
+use crate::response::predict::predictor::{central_of, weighted};
 use crate::response::{N_LATENTS, Predictor, STEP_S};
 use impactlab_core::numerics::{MAX_LANES, random_stream};
 use impactlab_core::vehicle::{RestWatch, VehicleInput, VehicleParameters, VehicleState};
@@ -45,8 +46,8 @@ pub struct RestSearch {
 /// Motions of a vehicle that were followed to rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettledMotions {
-    /// That of each component with every latent factor at zero.
-    pub paths: Vec<SettledMotion>,
+    /// The path with every latent factor at zero: [`Predictor::central_path`] as long as it is not at rest.
+    pub central: Vec<VehicleState<f64>>,
     /// Coherent draws.
     pub draws: Vec<SettledMotion>,
 }
@@ -57,6 +58,15 @@ impl Predictor {
         self.network.learned_s()
     }
 
+    /// Inputs of the steps that begin within the time that the model has learned from, and those after them.
+    fn split_at_learned<'a>(
+        &self,
+        inputs: &'a [VehicleInput<f64>],
+    ) -> (&'a [VehicleInput<f64>], &'a [VehicleInput<f64>]) {
+        let is_learned = |i: &usize| (*i as f64 * STEP_S) < self.learned_s();
+        inputs.split_at((0..inputs.len()).take_while(is_learned).count())
+    }
+
     /// The predictor for motions that begin like this one: what was learned fades where they lie outside
     /// of what was learned from.
     #[must_use]
@@ -64,7 +74,7 @@ impl Predictor {
         self.fitted_to(initial, inputs).into_owned()
     }
 
-    /// The motions of the components and coherent draws, each followed to rest.
+    /// The path with every latent factor at zero and coherent draws, each followed to rest.
     ///
     /// - `inputs`: the input over each step, as many as the motion may take;
     /// - `draws`: numbers of the draws, which decide on what is drawn.
@@ -77,10 +87,8 @@ impl Predictor {
     ) -> SettledMotions {
         let fitted = self.fitted_to(initial, inputs);
         let dynamics = fitted.dynamics();
-        let (paths, weights) = self.settled_components(&fitted, initial, inputs);
-        let learned_s = fitted.network.learned_s();
-        let is_learned = |i: &usize| (*i as f64 * STEP_S) < learned_s;
-        let (learned, rest) = inputs.split_at((0..inputs.len()).take_while(is_learned).count());
+        let (central, weights) = self.settled_components(&fitted, initial, inputs);
+        let (learned, rest) = fitted.split_at_learned(inputs);
         let draw = |&idx: &usize| {
             let rng = random_stream(search.seed, "motions to rest", idx as u64);
             let mut draw = fitted.drawn_motion(&weights, rng);
@@ -94,7 +102,7 @@ impl Predictor {
                 draws.iter().map(|_| watch(&fitted.vehicle, inputs)).collect();
             let motions = settling(&dynamics, draws, &mut watches, initial, learned);
             let go_on = |((mut motion, mut watch), factors): ((FollowedMotion, RestWatch), _)| {
-                if !rest.is_empty() && motion.states.len() > learned.len() {
+                if !rest.is_empty() {
                     let resisted = with_resistance(&fitted.vehicle, factors);
                     let beyond = Dynamics::new(&resisted, &fitted.network, &fitted.latents);
                     follow_on(&beyond, &mut motion, &mut watch, inputs, learned.len());
@@ -103,11 +111,14 @@ impl Predictor {
             };
             motions.into_iter().zip(watches).zip(factors).map(go_on).collect::<Vec<_>>()
         };
-        SettledMotions { paths, draws: draws.par_chunks(MAX_LANES).flat_map_iter(settle).collect() }
+        SettledMotions {
+            central,
+            draws: draws.par_chunks(MAX_LANES).flat_map_iter(settle).collect(),
+        }
     }
 
-    /// The motion of each component with every latent factor at zero, followed to rest, and the
-    /// probabilities of the components.
+    /// The path with every latent factor at zero, followed to rest, and the probabilities of the
+    /// components.
     ///
     /// - `fitted`: this predictor for motions under these inputs.
     fn settled_components(
@@ -115,10 +126,9 @@ impl Predictor {
         fitted: &Self,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
-    ) -> (Vec<SettledMotion>, Vec<f64>) {
+    ) -> (Vec<VehicleState<f64>>, Vec<f64>) {
         // What a component weighs is known as far as the network is.
-        let n_learned = ((fitted.network.learned_s() / STEP_S).ceil() as usize).min(inputs.len());
-        let (learned, rest) = inputs.split_at(n_learned);
+        let (learned, rest) = fitted.split_at_learned(inputs);
         let n = fitted.n_components();
         let mut draws: Vec<MotionDraw> =
             (0..n).map(|j| MotionDraw::certain(j, [0.0; N_LATENTS])).collect();
@@ -126,15 +136,18 @@ impl Predictor {
             draws.extend((0..n).map(|j| MotionDraw::certain(j, fitted.mean_latents(j))));
         }
         let mut watches: Vec<RestWatch> = (0..n).map(|_| watch(&fitted.vehicle, inputs)).collect();
-        let mut motions = settling(&fitted.dynamics(), draws, &mut watches, initial, inputs);
+        let dynamics = fitted.dynamics();
+        let mut motions = settling(&dynamics, draws, &mut watches, initial, learned);
         let at_means = motions.split_off(n);
+        for (motion, watch) in motions.iter_mut().zip(&mut watches) {
+            follow_on(&dynamics, motion, watch, inputs, learned.len());
+        }
         let paths = match rest.is_empty() {
             true => weighted(at_means),
             false => self.paths(initial, learned),
         };
         let weights = paths.iter().map(|path| path.weight).collect();
-        let of_components = motions.into_iter().zip(&watches);
-        (of_components.map(|(motion, watch)| settled(motion, watch)).collect(), weights)
+        (central_of(&motions), weights)
     }
 }
 
@@ -174,7 +187,7 @@ fn settling(
     })
 }
 
-/// Follows a motion further.
+/// Follows a motion further, if it was not over before.
 ///
 /// - `n_done`: inputs under which it was followed.
 fn follow_on(
@@ -185,13 +198,17 @@ fn follow_on(
     n_done: usize,
 ) {
     let FollowedMotion { draw, states, .. } = motion;
+    if states.len() <= n_done {
+        return;
+    }
     let mut batch = NetworkBatch::default();
     for (i, u) in inputs.iter().enumerate().skip(n_done) {
         let time_s = i as f64 * STEP_S;
         let Some(state) = states.last().filter(|state| !watch.has_settled(time_s, state)) else {
             break;
         };
-        let mut next = dynamics.step(draw.component, &draw.latents, state, u, time_s, &mut batch);
+        let (component, latents) = (draw.component, &draw.latents);
+        let mut next = dynamics.step_beyond(component, latents, state, u, time_s, &mut batch);
         draw.add_noise(&mut next, dynamics.noise([0, draw.component], &batch));
         states.push(next);
     }
@@ -208,7 +225,9 @@ fn settled(motion: FollowedMotion, watch: &RestWatch) -> SettledMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::response::predict::test_motions::{predictor, released};
+    use crate::response::predict::test_motions::{driving, predictor, released};
+    use crate::shipped::ModelSource;
+    use impactlab_core::vehicle::Preset;
 
     /// The motion followed by itself, with its vehicle after the time that was learned from.
     fn by_itself(
@@ -224,14 +243,19 @@ mod tests {
         let within = predictor.dynamics();
         let (mut watch, mut batch) = (watch(&predictor.vehicle, inputs), NetworkBatch::default());
         let (mut state, mut states) = (initial, vec![initial]);
+        let (component, latents) = (draw.component, draw.latents);
         for (i, u) in inputs.iter().enumerate() {
             let time_s = i as f64 * STEP_S;
             if watch.has_settled(time_s, &state) {
                 break;
             }
-            let dynamics = if time_s < predictor.learned_s() { &within } else { &beyond };
-            state = dynamics.step(draw.component, &draw.latents, &state, u, time_s, &mut batch);
-            draw.add_noise(&mut state, dynamics.noise([0, draw.component], &batch));
+            let is_learned = time_s < predictor.learned_s();
+            let dynamics = if is_learned { &within } else { &beyond };
+            state = match is_learned {
+                true => dynamics.step(component, &latents, &state, u, time_s, &mut batch),
+                false => dynamics.step_beyond(component, &latents, &state, u, time_s, &mut batch),
+            };
+            draw.add_noise(&mut state, dynamics.noise([0, component], &batch));
             states.push(state);
         }
         let rest = watch.since_s((states.len() - 1) as f64 * STEP_S);
@@ -258,11 +282,65 @@ mod tests {
                 let expected = by_itself(&predictor, draw, &search, initial, &inputs);
                 assert_eq!(*motion, expected, "{learned_s} s, draw {idx}");
             }
-            for (component, motion) in settled.paths.iter().enumerate() {
-                let draw = MotionDraw::certain(component, [0.0; N_LATENTS]);
-                let expected = by_itself(&predictor, draw, &search, initial, &inputs);
-                assert_eq!(*motion, expected, "{learned_s} s, component {component}");
-            }
         }
+    }
+
+    #[test]
+    fn a_step_that_begins_as_the_learned_time_ends_is_not_learned() {
+        let mut predictor = predictor();
+        let inputs = released(20);
+        // 0.07 / 0.01 is more than 7.
+        for (learned_s, n_learned) in [(0.07, 7), (0.075, 8), (0.0, 0), (f64::INFINITY, 20)] {
+            predictor.network = predictor.network.clone().learned_for(learned_s);
+            let (learned, rest) = predictor.split_at_learned(&inputs);
+            assert_eq!((learned.len(), rest.len()), (n_learned, 20 - n_learned), "{learned_s}");
+        }
+    }
+
+    #[test]
+    fn the_central_path_does_not_depend_on_how_long_motions_are_followed() {
+        let initial = driving(1.5);
+        let search = RestSearch { seed: 7, resistance_scatter: RESISTANCE_SCATTER };
+        for learned_s in [0.5, f64::INFINITY] {
+            let mut predictor = predictor();
+            predictor.network = predictor.network.clone().learned_for(learned_s);
+            let central =
+                |n: usize| predictor.settled(&initial, &released(n), &[0], &search).central;
+            let [timed, to_rest] = [150, 1200].map(central);
+            assert!(timed.len() == 151 && to_rest.len() > 151, "{}", to_rest.len());
+            assert_eq!(timed, to_rest[..151], "{learned_s} s");
+            // What was learned does not go on as the driving of a car that nothing drives.
+            let n_learned = if learned_s.is_finite() { 50 } else { 150 };
+            let path = predictor.central_path(&initial, &released(n_learned));
+            assert_eq!(timed[..=n_learned], path, "{learned_s} s");
+        }
+    }
+
+    /// A tenth of the draws of a car that rolls at 1 m/s rolled on for ever: strengths are drawn that leave
+    /// no resistance.
+    #[test]
+    fn a_car_that_nothing_drives_does_not_roll_for_ever() {
+        let model = ModelSource::Shipped.response_model().unwrap();
+        let predictor = model.predictor(&Preset::Reference.parameters()).unwrap();
+        let search = RestSearch { seed: 1, resistance_scatter: RESISTANCE_SCATTER };
+        let numbers: Vec<usize> = (0..60).collect();
+        let initial = VehicleState::driving_straight(1.0);
+        let settled = predictor.settled(&initial, &released(10_000), &numbers, &search);
+        let n_moving = settled.draws.iter().filter(|motion| motion.rest.is_none()).count();
+        assert_eq!(n_moving, 0, "of {}", settled.draws.len());
+    }
+
+    #[test]
+    fn a_likelier_component_has_more_of_the_central_path() {
+        let motion = |component: usize, y_m: f64, probability: f64| {
+            let draw = MotionDraw::certain(component, [0.0; N_LATENTS]);
+            let state = VehicleState { y_m, ..VehicleState::default() };
+            FollowedMotion::of_states(draw, vec![state; 4], vec![probability; 2])
+        };
+        let central = central_of(&[motion(0, 0.0, 0.2), motion(1, 1.0, 0.6)]);
+        let y_m: Vec<f64> = central.iter().map(|state| state.y_m).collect();
+        assert_eq!(y_m.len(), 4);
+        assert!((y_m[0] - 0.5).abs() < 1e-12, "{y_m:?}");
+        assert!(y_m[1..].iter().all(|y_m| (y_m - 0.75).abs() < 1e-12), "{y_m:?}");
     }
 }

@@ -8,18 +8,18 @@
 //! p(x; widening, ratio) = ½ p(x; widening/√ratio) + ½ p(x; widening √ratio)
 //! ```
 //!
-//! They are forecasts like those that are made for a person, of fewer motions with the same random numbers at
-//! every scale.
+//! They are of as many motions as the forecasts that are made for a person, so that regions are of one width
+//! for both, with the same random numbers at every scale.
 
 use rayon::prelude::*;
 
 use crate::learning::{FitSteps, LearningError, TrainingProgress};
-use crate::response::predict::CALIBRATION_MOTIONS;
 use crate::response::train::fleet::cars_of;
 use crate::response::{
-    MotionDistribution, MotionDomain, ResponseCase, ResponseModel, StrengthPopulation, Widths,
+    LEAST_MOTIONS, MotionDomain, ResponseCase, ResponseModel, StrengthPopulation, Widths,
 };
 use impactlab_core::uncertainty::PlanarMixture;
+use impactlab_core::vehicle::VehicleState;
 
 /// Growths of all deviations, and scales of them, that are tried.
 const GROWTHS: [f64; 3] = [0.0, 0.5, 1.5];
@@ -32,14 +32,13 @@ const LEVELS: [f64; 2] = [0.5, 0.9];
 /// those that are too wide do not.
 const SHORTFALL: f64 = 3.0;
 /// Steps from one instant at which the regions are looked at to the next: 1 s, up to 12 s, which is as
-/// long as the recordings of a fleet. Regions that were calibrated up to 4 s held 69 % of the ends at 8 s
-/// instead of 90 %.
+/// long as the recordings of a fleet.
 const STRIDE_STEPS: usize = 100;
 const N_INSTANTS: usize = 12;
 /// Motions that are asked about, of all cars: some from each.
 const MOST_MOTIONS: usize = 160;
 /// Paths of 4 s that take as long to compute as 1 s of the forecast of a motion.
-const PATHS_PER_STRIDE: usize = CALIBRATION_MOTIONS / 4;
+const PATHS_PER_STRIDE: usize = LEAST_MOTIONS / 4;
 /// Motions for each thread between two reports.
 const MOTIONS_PER_THREAD: usize = 2;
 
@@ -99,9 +98,8 @@ fn n_steps_of_motion(case: &ResponseCase) -> usize {
 /// a few motions of. The network and what it knows of cars stay as they are, and so do the regions of a
 /// car that is well known.
 ///
-/// Every car is asked about as if nothing were known of it. The network has learned from it all the same;
-/// networks of the fleet that had not held 42 and 89 % where the whole one held 43 and 90 %, and on cars
-/// held out 41 and 89 %: what it knows by heart does not matter beside what it does not.
+/// Every car is asked about as if nothing were known of it, though the network has learned from it all the
+/// same.
 ///
 /// - `cases`: trajectories; those that the model has not learned from are left alone, so that they can
 ///   still judge it.
@@ -252,20 +250,22 @@ fn held_positions(
     let mut held = vec![HeldByTime::default(); pairs.len()];
     let Some(initial) = case.states.first() else { return Ok(held) };
     let inputs = &case.inputs[..case.inputs.len().min(N_INSTANTS * STRIDE_STEPS)];
-    let forecasts: Vec<MotionDistribution> = models
-        .iter()
-        .map(|model| {
-            let predictor = model.predictor(&case.vehicle)?;
-            Ok(predictor.forecast_of(initial, inputs, CALIBRATION_MOTIONS))
-        })
-        .collect::<Result<_, LearningError>>()?;
-    for instant in 0..N_INSTANTS {
-        let at = (instant + 1) * STRIDE_STEPS;
-        let Some(state) = case.states.get(at).filter(|_| at <= inputs.len()) else { break };
-        let positions: Vec<PlanarMixture> =
-            forecasts.iter().map(|forecast| forecast.position(at)).collect();
+    let steps = (1..=N_INSTANTS).map(|instant| instant * STRIDE_STEPS);
+    let recorded: Vec<(usize, &VehicleState<f64>)> = steps
+        .filter(|at| *at <= inputs.len())
+        .map_while(|at| Some((at, case.states.get(at)?)))
+        .collect();
+    // The draws of one scale at a time are in memory.
+    let positions_with = |model: &ResponseModel| -> Result<Vec<PlanarMixture>, LearningError> {
+        let forecast = model.predictor(&case.vehicle)?.forecast(initial, inputs);
+        Ok(recorded.iter().map(|(at, _)| forecast.position(*at)).collect())
+    };
+    let positions: Vec<Vec<PlanarMixture>> =
+        models.iter().map(positions_with).collect::<Result<_, LearningError>>()?;
+    for (instant, (_, state)) in recorded.iter().enumerate() {
         for (held, ScalePair([narrow, wide])) in held.iter_mut().zip(pairs) {
-            let both = PlanarMixture::mixed([&positions[*narrow], &positions[*wide]]);
+            let both =
+                PlanarMixture::mixed([&positions[*narrow][instant], &positions[*wide][instant]]);
             let level = both.level_of([state.x_m, state.y_m]);
             held[instant] =
                 Held { inside: LEVELS.map(|limit| usize::from(level <= limit)), all: 1 };

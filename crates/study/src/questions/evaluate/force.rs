@@ -248,7 +248,7 @@ impl EvaluatedForceCases {
                 return Ok(Outcome::Cancelled);
             }
             let mut rng = random_stream(seed, "draws", done as u64);
-            let draws = distribution(model, case)?.sample_quantities(n_draws, &mut rng);
+            let (_, draws) = distribution(model, case)?.sample_quantities(n_draws, &mut rng);
             let impulse = bands_of_draws(draws.impulse_magnitude_n_s());
             all.push((case.clone(), impulse, bands_of_draws(draws.peak_n)));
         }

@@ -32,8 +32,8 @@ pub struct FlaggedContact {
     pub position_m: [f64; 2],
     /// How fast their overlap grows there, m/s.
     pub closing_speed_m_s: f64,
-    /// Share of the draws in which they do; time, place and speed are then medians. None where
-    /// nothing is drawn.
+    /// Share of the draws in which they do; time, place and speed are then medians. None of a single
+    /// path.
     pub probability: Option<f64>,
     /// When the first of the draws do, s: 5 % of those that do are earlier.
     pub from_s: f64,
@@ -187,7 +187,8 @@ impl From<&SecondContacts> for FlagReport {
         let contact = FlaggedContact {
             position_m: [x, y],
             closing_speed_m_s: speed,
-            probability: Some(met.probability),
+            // One path either meets the other vehicle or does not.
+            probability: (met.n_draws > 1).then_some(met.probability),
             from_s,
         };
         let flag = Self::new(CaveatKind::SecondContact, time_s, message);
@@ -218,7 +219,7 @@ mod tests {
     use serde_json::json;
 
     use super::*;
-    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+    use impactlab_core::units::{Estimate, Language, NumberFormat, UnitSystem};
     use impactlab_core::vehicle::Wheel;
 
     #[test]
@@ -237,6 +238,26 @@ mod tests {
         assert_eq!(flag(Some(0.05), 0.3).known_until_s(), f64::INFINITY);
         let lift = FlagReport::new(CaveatKind::WheelLift, 0.4, String::new());
         assert_eq!(lift.known_until_s(), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_second_contact_of_a_single_path_has_no_probability() {
+        let flag = |n_draws: usize| {
+            let estimate = |value: f64| Estimate::from_draws(vec![value; n_draws]);
+            FlagReport::from(&SecondContacts {
+                n_draws,
+                probability: 1.0,
+                time_s: estimate(0.3),
+                x_m: estimate(1.0),
+                y_m: estimate(2.0),
+                closing_speed_m_s: estimate(0.5),
+                apart_share: 1.0,
+            })
+        };
+        let [one, many] = [1, 10].map(flag);
+        let probability = |flag: &FlagReport| flag.contact.and_then(|it| it.probability);
+        assert_eq!((probability(&one), probability(&many)), (None, Some(1.0)));
+        assert_eq!(one.known_until_s(), 0.3);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use impactlab_core::uncertainty::{CurveComponent, ForceCurve};
+use impactlab_core::uncertainty::{CurveComponent, ForceCurve, PeakFactors};
 
 /// Number of latent factors of a component.
 const N_FACTORS: usize = 8;
@@ -53,7 +53,14 @@ pub(super) fn component(draws: &[ForceCurve], own_std_n: Vec<f64>) -> CurveCompo
         .zip(own)
         .map(|((all, known), own)| (all.norm_squared() - known.norm_squared()).max(0.0) + own * own)
         .collect();
-    CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation: 0.0 }
+    CurveComponent {
+        weight: 1.0,
+        mean,
+        factors,
+        variance,
+        lag_correlation: 0.0,
+        peak: PeakFactors::default(),
+    }
 }
 
 #[cfg(test)]
