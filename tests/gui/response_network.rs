@@ -98,6 +98,8 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     step_until(&mut harness, "the density", |state| is_density_current(state, [time_s; 2]));
     harness.run_steps(4);
     save(&mut harness, "motion-forecast-predicted.png");
+    // What is done within a second is undone at once.
+    harness.run_steps(90);
     // A trajectory does not describe its collision. The given force is shown instead, and a message
     // says so.
     select(&mut harness, DATA, "FE_c002");
