@@ -298,7 +298,7 @@ fn what_the_shipped_networks_did_is_not_said_of_a_network_of_the_user() {
         report(&CaseFile::new("own", variant), &english()).0
     };
     let other =
-        "Answered by other networks than the shipped ones: force network (force.safetensors).";
+        "Answered by other networks than the default ones: force network (force.safetensors).";
     assert_says(&report_of(ModelChoice::file(&file)), other);
     let shipped = report_of(ModelChoice::default());
     assert!(!texts(&shipped).iter().any(|text| text.contains("Answered by other networks")));

@@ -10,7 +10,8 @@ use impactlab_core::collision::{PrincipalDirectionOfForce, Pulse, PulseError, Pu
 use impactlab_core::numerics::random_stream;
 use impactlab_core::numerics::{quantile_of_sorted, wrap_angle_rad};
 use impactlab_core::uncertainty::{
-    CURVE_INTERVAL_S, CurveBands, CurveMixture, ForceCurve, MixtureError, NormalMixture,
+    CURVE_INTERVAL_S, CurveBands, CurveComponent, CurveMixture, CurveQuantities, ForceCurve,
+    MixtureError, NormalMixture,
 };
 use impactlab_core::units::{Estimate, Interval};
 use impactlab_networks::force::metrics::BAND_LEVELS;
@@ -18,6 +19,8 @@ use impactlab_networks::force::metrics::BAND_LEVELS;
 /// Number of curves drawn for quantities whose distribution has no closed form; a 5 % tail then has
 /// 100 of them.
 const N_DRAWS: usize = 2000;
+/// The same for the peak of one component, of which the median alone is told.
+const N_COURSE_DRAWS: usize = 100;
 
 /// Number of whole curves to show, and seed of the draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +38,8 @@ pub struct Mode {
     pub weight: f64,
     /// Impulse `[P_x, P_y]` of the component's mean curve, N s.
     pub impulse_n_s: [f64; 2],
-    /// Largest `|F|` of the component's mean curve, N.
+    /// Largest `|F|` of the component, N: the median of draws with its
+    /// [`PeakFactors`](impactlab_core::uncertainty::PeakFactors).
     pub peak_n: f64,
     /// Mean contact duration of the component, s.
     pub duration_s: f64,
@@ -115,7 +119,7 @@ impl ForceForecast {
             duration_s,
             mean,
             curves,
-            modes: modes(mixture),
+            modes: modes(mixture, settings.seed)?,
         })
     }
 }
@@ -133,19 +137,23 @@ fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
 }
 
 /// Components of a mixture with the quantities that are shown, in descending order of weight.
-fn modes(mixture: &CurveMixture) -> Vec<Mode> {
-    let mode = |component: &impactlab_core::uncertainty::CurveComponent| {
+fn modes(mixture: &CurveMixture, seed: u64) -> Result<Vec<Mode>, MixtureError> {
+    let mode = |(idx, component): (usize, &CurveComponent)| {
         let mean = ForceCurve::from_values(&component.mean);
-        Mode {
+        let alone = CurveMixture::new(vec![CurveComponent { weight: 1.0, ..component.clone() }])?;
+        let mut rng = random_stream(seed, "peaks of a course", idx as u64);
+        let (_, drawn) = alone.sample_quantities(N_COURSE_DRAWS, &mut rng);
+        Ok(Mode {
             weight: component.weight,
             impulse_n_s: mean.impulse_n_s(),
-            peak_n: mean.peak().0,
-            duration_s: mean.duration_s,
-        }
+            peak_n: CurveQuantities::median(&drawn.peak_n).unwrap_or(0.0),
+            duration_s: mean.duration_s.max(0.0),
+        })
     };
-    let mut modes: Vec<Mode> = mixture.components().iter().map(mode).collect();
+    let modes = mixture.components().iter().enumerate().map(mode);
+    let mut modes = modes.collect::<Result<Vec<Mode>, MixtureError>>()?;
     modes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    modes
+    Ok(modes)
 }
 
 /// Classic pulses of all shapes that carry a given impulse, from the start of the time grid.
@@ -172,7 +180,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use impactlab_core::uncertainty::{CurveComponent, PeakFactors};
+    use impactlab_core::uncertainty::PeakFactors;
 
     /// Half-sine pulses along y, with a share along x, whose height is changed by one latent
     /// factor.
@@ -218,6 +226,23 @@ mod tests {
         assert_eq!((forecast.curves.len(), forecast.bands.fx.len()), (5, 4));
         assert!(forecast.modes.windows(2).all(|pair| pair[0].weight >= pair[1].weight));
         assert_eq!(forecast, ForceForecast::new(&example(), settings).unwrap());
+    }
+
+    /// The peaks of mean curves stood there, which are lower than those that are told above them.
+    #[test]
+    fn the_peak_of_a_course_is_told_as_that_of_the_answer() {
+        let peak = PeakFactors { scale: 2.0, spread: 1.0 };
+        let [plain, doubled] = [PeakFactors::default(), peak].map(|peak| {
+            let mixture = example().map_components(|component| component.peak = peak);
+            let settings = ForecastSettings { n_curves: 1, seed: 3 };
+            ForceForecast::new(&mixture, settings).unwrap()
+        });
+        let modes = plain.modes.iter().zip(&doubled.modes);
+        for (plain, doubled) in modes {
+            assert!((doubled.peak_n / plain.peak_n - 2.0).abs() < 1e-9, "{plain:?} {doubled:?}");
+        }
+        let [low, high] = plain.peak_n.ninety();
+        assert!(plain.modes.iter().all(|mode| (low..=high).contains(&mode.peak_n)));
     }
 
     /// The 90 % interval of a widened distribution began at −0.01 s.

@@ -70,8 +70,9 @@ pub struct StruckVehicle {
 pub struct MotionForecast {
     /// Distribution of the motion, at intervals of [`STEP_S`].
     pub distribution: MotionDistribution,
-    /// The path with the latent factors of the model at zero ([`Predictor::central_path`]),
-    /// averaged over the force curves.
+    /// The path with the latent factors of the model at zero
+    /// ([`SettledMotions::central`](impactlab_networks::response::SettledMotions::central)), averaged over
+    /// the force curves.
     pub central: Vec<VehicleState<f64>>,
     /// The path with the latent factors at zero under each force, or of each vehicle where these are more:
     /// they take turns. Of both vehicles the paths of the draws. Positions of the CG and headings from first

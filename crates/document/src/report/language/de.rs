@@ -358,8 +358,8 @@ pub(super) const WORDS: Words = Words {
         Wahrheit bekannt war. Die Daten sind Simulationen, keine Messungen; kein realer Unfall \
         wurde geprüft. Quelle: docs/VALIDATION.md des Programms, mit dem Befehl zu jeder \
         Tabelle.",
-    validation_other_networks: "Geantwortet haben andere Netze als die mitgelieferten: {list}. Was hier und unter den \
-        Grenzen des Verfahrens steht, sagt, woraus die mitgelieferten gelernt haben und wie gut sie waren. Über diese \
+    validation_other_networks: "Geantwortet haben andere Netze als die voreingestellten: {list}. Was hier und unter den \
+        Grenzen des Verfahrens steht, sagt, woraus die voreingestellten gelernt haben und wie gut sie waren. Über diese \
         Netze sagt es nichts: `impactlab evaluate` misst sie.",
     validation_impact: "Gegen Finite-Elemente-Rechnungen mit Annäherung von 0,8 bis 5,0 m/s; bei höherer \
         Annäherungsgeschwindigkeit ist die Stoßziffer kleiner.",
@@ -367,7 +367,7 @@ pub(super) const WORDS: Words = Words {
     validation_four_dof: "Gegen ein Mehrkörpermodell desselben Fahrzeugs über 4 s.",
     table_four_dof: "Abstand zur Referenzbahn",
     validation_force: "Das mitgelieferte, gegen 25 Finite-Elemente-Rechnungen, die es nicht kennt, mit Annäherung von 0,8 bis 5 m/s; \
-        Intervalle sind dort eher zu breit. Von 61 anderen, mit Annäherung bis 12 m/s, enthielten Intervalle von 90 % \
+        Intervalle von 50 % sind dort zu breit. Von 61 anderen, mit Annäherung bis 12 m/s, enthielten Intervalle von 90 % \
         90 % der Impulse, 92 % der größten Kräfte und 89 % der Dauern; der Fehler des Impulses war dort im Mittel 15 %, \
         im Median 10 %.",
     table_force: "Fehler, Median (Mittel), %",

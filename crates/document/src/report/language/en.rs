@@ -344,16 +344,16 @@ pub(super) const WORDS: Words = Words {
     validation_text: "These numbers are not of this case: they say how the models did where the truth was \
         known. The data are simulations, not measurements; no real collision was tried. Source: \
         docs/VALIDATION.md of the program, with the command of each table.",
-    validation_other_networks: "Answered by other networks than the shipped ones: {list}. What stands here and under \
-        the limits of the method says what the shipped ones learned from and how they did. Of these networks it \
+    validation_other_networks: "Answered by other networks than the default ones: {list}. What stands here and under \
+        the limits of the method says what the default ones, which are shipped, learned from and how they did. Of these networks it \
         says nothing: `impactlab evaluate` measures them.",
     validation_impact: "Against finite-element runs that close at 0.8 to 5.0 m/s; at higher closing speeds \
         restitution is smaller.",
     table_impact: "Error of the impulse vector, median (mean), %",
     validation_four_dof: "Against a multibody model of the same car over 4 s.",
     table_four_dof: "Distance from the reference path",
-    validation_force: "The shipped one, against 25 finite-element runs that it has not seen, which close at 0.8 to 5 m/s; intervals are \
-        rather too wide there. Of 61 others, which close at up to 12 m/s, intervals of 90 % held 90 % of the impulses, \
+    validation_force: "The shipped one, against 25 finite-element runs that it has not seen, which close at 0.8 to 5 m/s; intervals of \
+        50 % are too wide there. Of 61 others, which close at up to 12 m/s, intervals of 90 % held 90 % of the impulses, \
         92 % of the peaks and 89 % of the durations; it erred there by 15 % of the impulse in the mean, and by 10 % in \
         the median.",
     table_force: "Errors, median (mean), %",

@@ -30,6 +30,8 @@ const SHARED_PER_IMPULSE: Tried = Tried { n: 15, range: [0.25, 32.0] };
 const SINGLE: Tried = Tried { n: 4, range: [0.25, 2.0] };
 /// Factors on the deviation of peaks that are tried.
 const PEAK_SPREAD: Tried = Tried { n: 31, range: [0.25, 8.0] };
+/// Largest spread of peaks, and logarithm of their scale, of a file that is read.
+const MOST_PEAK_FACTOR: f64 = 10.0;
 /// Number of draws of a case for its peak.
 const N_PEAK_DRAWS: usize = 200;
 /// Smallest number of cases for a calibration.
@@ -174,7 +176,11 @@ impl VarianceFactors {
         check_number(&format!("{name}.single"), self.single, Expected::Positive)?;
         check_number(&format!("{name}.duration"), self.duration, Expected::Positive)?;
         check_number(&format!("{name}.peak.scale"), self.peak.scale, Expected::Positive)?;
-        check_number(&format!("{name}.peak.spread"), self.peak.spread, Expected::Positive)
+        check_number(&format!("{name}.peak.spread"), self.peak.spread, Expected::Positive)?;
+        let [scale, spread] = [self.peak.scale.ln(), self.peak.spread];
+        let most = Expected::Magnitude(MOST_PEAK_FACTOR);
+        check_number(&format!("{name}.peak.scale (logarithm)"), scale, most)?;
+        check_number(&format!("{name}.peak.spread"), spread, Expected::Magnitude(MOST_PEAK_FACTOR))
     }
 
     /// The factors with which the central 90 % intervals contain 90 % of
@@ -307,7 +313,7 @@ impl Held {
     }
 
     /// Sum of the squared differences from the nominal shares, in logarithms of the odds: from 90 %, 80 %
-    /// are as far as 96.
+    /// are as far as 95.
     fn off(self) -> f64 {
         let log_odds = |share: f64| (share / (1.0 - share)).ln();
         let off = |(held, share): (&f64, f64)| (log_odds(*held) - log_odds(share)).powi(2);

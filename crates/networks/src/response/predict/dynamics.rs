@@ -140,10 +140,10 @@ impl<'a> Dynamics<'a> {
             };
             let uncorrected = step([0.0; N_RESIDUAL]);
             let taken_j = (brought_j(&uncorrected) - energy_j(&uncorrected)).max(0.0);
-            let most_j = brought_j(&next) - (1.0 - GIVEN_BACK_SHARE) * taken_j;
+            let most_j = (brought_j(&next) - (1.0 - GIVEN_BACK_SHARE) * taken_j).max(0.0);
             let is_j = energy_j(&next);
             if is_j > most_j {
-                let share = (most_j.max(0.0) / is_j).sqrt();
+                let share = (most_j / is_j).sqrt();
                 next.vx_body_m_s *= share;
                 next.vy_body_m_s *= share;
                 next.yaw_rate_rad_s *= share;

@@ -46,7 +46,8 @@ pub struct RestSearch {
 /// Motions of a vehicle that were followed to rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SettledMotions {
-    /// The path with every latent factor at zero: [`Predictor::central_path`] as long as it is not at rest.
+    /// The path with every latent factor at zero: [`Predictor::central_path`] as long as it is not at rest,
+    /// within the time that was learned from.
     pub central: Vec<VehicleState<f64>>,
     /// Coherent draws.
     pub draws: Vec<SettledMotion>,
@@ -227,7 +228,7 @@ mod tests {
     use super::*;
     use crate::response::predict::test_motions::{driving, predictor, released};
     use crate::shipped::ModelSource;
-    use impactlab_core::vehicle::Preset;
+    use impactlab_core::vehicle::{Preset, RoadSlope};
 
     /// The motion followed by itself, with its vehicle after the time that was learned from.
     fn by_itself(
@@ -328,6 +329,28 @@ mod tests {
         let settled = predictor.settled(&initial, &released(10_000), &numbers, &search);
         let n_moving = settled.draws.iter().filter(|motion| motion.rest.is_none()).count();
         assert_eq!(n_moving, 0, "of {}", settled.draws.len());
+    }
+
+    /// Where a car turns round on a slope its energy is none for a moment, and a share of it no number.
+    #[test]
+    fn a_car_that_rolls_uphill_turns_round() {
+        let mut vehicle = Preset::Reference.parameters();
+        vehicle.slope = RoadSlope { grade: 0.05, cross_slope: 0.0 };
+        let model = ModelSource::Shipped.response_model().unwrap();
+        let mut predictor = model.predictor(&vehicle).unwrap();
+        predictor.network = predictor.network.clone().learned_for(0.5);
+        let search = RestSearch { seed: 1, resistance_scatter: RESISTANCE_SCATTER };
+        let numbers: Vec<usize> = (0..120).collect();
+        for speed_m_s in [0.4, 0.9, 1.5] {
+            let initial = VehicleState::driving_straight(speed_m_s);
+            let settled = predictor.settled(&initial, &released(1000), &numbers, &search);
+            let draws = settled.draws.iter().flat_map(|motion| &motion.states);
+            for state in draws.chain(&settled.central) {
+                assert!(state.to_array().iter().all(|value| value.is_finite()), "{state:?}");
+            }
+            let turned = settled.central.last().is_some_and(|state| state.vx_body_m_s < 0.0);
+            assert!(turned || settled.central.len() < 1000, "{speed_m_s} m/s");
+        }
     }
 
     #[test]
