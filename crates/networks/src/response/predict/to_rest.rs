@@ -331,25 +331,24 @@ mod tests {
         assert_eq!(n_moving, 0, "of {}", settled.draws.len());
     }
 
-    /// Where a car turns round on a slope its energy is none for a moment, and a share of it no number.
+    /// Where a car turns round its energy is next to none, and what is shared of it must stay a number.
     #[test]
     fn a_car_that_rolls_uphill_turns_round() {
         let mut vehicle = Preset::Reference.parameters();
         vehicle.slope = RoadSlope { grade: 0.05, cross_slope: 0.0 };
         let model = ModelSource::Shipped.response_model().unwrap();
         let mut predictor = model.predictor(&vehicle).unwrap();
-        predictor.network = predictor.network.clone().learned_for(0.5);
+        predictor.network = predictor.network.clone().learned_for(0.0);
         let search = RestSearch { seed: 1, resistance_scatter: RESISTANCE_SCATTER };
         let numbers: Vec<usize> = (0..120).collect();
-        for speed_m_s in [0.4, 0.9, 1.5] {
-            let initial = VehicleState::driving_straight(speed_m_s);
-            let settled = predictor.settled(&initial, &released(1000), &numbers, &search);
+        for speed in 1..=12 {
+            let initial = VehicleState::driving_straight(0.5e-3 * f64::from(speed));
+            let settled = predictor.settled(&initial, &released(200), &numbers, &search);
             let draws = settled.draws.iter().flat_map(|motion| &motion.states);
             for state in draws.chain(&settled.central) {
                 assert!(state.to_array().iter().all(|value| value.is_finite()), "{state:?}");
             }
-            let turned = settled.central.last().is_some_and(|state| state.vx_body_m_s < 0.0);
-            assert!(turned || settled.central.len() < 1000, "{speed_m_s} m/s");
+            assert!(settled.central.last().is_some_and(|state| state.vx_body_m_s < -0.1));
         }
     }
 
