@@ -89,7 +89,7 @@ fn what_the_force_network_has_never_seen_has_the_band_of_the_physics() {
     let scenarios = [
         changed("fast.toml", "speed_km_h = 62", "speed_km_h = 288"),
         changed("standing.toml", "speed_km_h = 54", "speed_km_h = 0"),
-        changed("slow.toml", "speed_km_h = 54", "speed_km_h = 18"),
+        changed("slow.toml", "speed_km_h = 54", "speed_km_h = 7"),
         changed("light.toml", "[target]\nmass_kg = 2000", "[target]\nmass_kg = 600"),
         "carpenter-welcher-barrier".to_owned(),
     ];

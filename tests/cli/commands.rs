@@ -120,7 +120,7 @@ fn shipped_data_sets_are_clean_enough() {
     let report = ran.json();
     assert_eq!(report["ok"], true);
     let sizes = report["datasets"].as_array().unwrap().iter().map(|set| &set["n_cases"]);
-    assert_eq!(sizes.collect::<Vec<_>>(), [100, 72, 29, 100, 40, 100, 100]);
+    assert_eq!(sizes.collect::<Vec<_>>(), [100, 190, 67, 100, 40, 100, 100]);
     for set in report["datasets"].as_array().unwrap() {
         assert_eq!(set["problems"].as_array().unwrap().len(), 0);
         assert!(set["columns"][0]["unit"].is_string());
