@@ -1,8 +1,9 @@
 //! The mechanical energy of the 4DOF vehicle, which nothing but a force, a drive, the slope of the road or
 //! work on the roll model may increase.
 
+use crate::numerics::{Lanes, LanesOver};
 use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::{VehicleParameters, VehicleState};
+use crate::vehicle::{VehicleConstants, VehicleParameters, VehicleState};
 
 impl VehicleParameters {
     /// Kinetic energy and potential of roll, J; zero for an upright vehicle at rest.
@@ -23,6 +24,65 @@ impl VehicleParameters {
         let lowered = 2.0 * (x.roll_rad / 2.0).sin().powi(2);
         let springs = suspension.roll_stiffness_n_m_rad * x.roll_rad * x.roll_rad / 2.0;
         kinetic / 2.0 + springs - weight_moment * lowered
+    }
+}
+
+impl<P: Copy> VehicleConstants<P> {
+    /// Energy of the planar motion, `m (v_x² + v_y²)/2 + I_zz r²/2`, J.
+    #[inline(always)]
+    pub fn planar_energy_j<T: Lanes + LanesOver<P>>(&self, x: &VehicleState<T>) -> T {
+        let speed_squared = x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s;
+        let spin_squared = x.yaw_rate_rad_s * x.yaw_rate_rad_s;
+        speed_squared * self.body.half_mass_kg + spin_squared * self.body.half_yaw_inertia_kg_m2
+    }
+
+    /// Energy of the planar motion at one place, with what the weight gives on the way to another one of a
+    /// road with a slope, J. Below zero, the vehicle does not get there by itself.
+    #[inline(always)]
+    pub fn energy_brought_j<T: Lanes + LanesOver<P>>(
+        &self,
+        from: &VehicleState<T>,
+        to: &VehicleState<T>,
+    ) -> T {
+        let kinetic_j = self.planar_energy_j(from);
+        match self.slope_m_s2 {
+            None => kinetic_j,
+            Some([g_x, g_y]) => {
+                let along = (to.x_m - from.x_m) * g_x + (to.y_m - from.y_m) * g_y;
+                kinetic_j + along * self.body.half_mass_kg * 2.0
+            }
+        }
+    }
+
+    /// A state whose velocities are scaled down where its planar motion has more than this energy.
+    ///
+    /// - `most_j`: J; below zero as zero.
+    #[inline(always)]
+    pub fn with_energy_up_to<T: Lanes + LanesOver<P>>(
+        &self,
+        mut x: VehicleState<T>,
+        most_j: T,
+    ) -> VehicleState<T> {
+        let (energy_j, none) = (self.planar_energy_j(&x), most_j.constant(0.0));
+        let most_j = most_j.if_less(none, none, most_j);
+        if most_j.any_less(energy_j) {
+            let share = most_j.if_less(energy_j, (most_j / energy_j).sqrt(), none.constant(1.0));
+            x.vx_body_m_s *= share;
+            x.vy_body_m_s *= share;
+            x.yaw_rate_rad_s *= share;
+        }
+        x
+    }
+
+    /// The end of a step over which nothing pushes or drives the vehicle, with the energy that it has
+    /// brought along at most.
+    #[inline(always)]
+    pub fn without_energy_gain<T: Lanes + LanesOver<P>>(
+        &self,
+        before: &VehicleState<T>,
+        after: VehicleState<T>,
+    ) -> VehicleState<T> {
+        self.with_energy_up_to(after, self.energy_brought_j(before, &after))
     }
 }
 

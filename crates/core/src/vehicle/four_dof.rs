@@ -301,31 +301,6 @@ impl<P: Copy> VehicleConstants<P> {
         }
     }
 
-    /// Energy that the weight gives to a vehicle which comes from one place of a road with a slope to
-    /// another one, J; `None` on a level road.
-    #[inline(always)]
-    pub fn energy_by_slope_j<T: Lanes + LanesOver<P>>(
-        &self,
-        from: &VehicleState<T>,
-        to: &VehicleState<T>,
-    ) -> Option<T> {
-        match self.slope_m_s2 {
-            None => None,
-            Some([g_x, g_y]) => {
-                let along = (to.x_m - from.x_m) * g_x + (to.y_m - from.y_m) * g_y;
-                Some(along * self.body.half_mass_kg * 2.0)
-            }
-        }
-    }
-
-    /// Energy of the planar motion, `m (v_x² + v_y²)/2 + I_zz r²/2`, J.
-    #[inline(always)]
-    pub fn planar_energy_j<T: Lanes + LanesOver<P>>(&self, x: &VehicleState<T>) -> T {
-        let speed_squared = x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s;
-        let spin_squared = x.yaw_rate_rad_s * x.yaw_rate_rad_s;
-        speed_squared * self.body.half_mass_kg + spin_squared * self.body.half_yaw_inertia_kg_m2
-    }
-
     /// Resultant of the tire forces, and the vertical loads of the wheels, N.
     ///
     /// - `of_body`: load transfer by everything except the tire forces.

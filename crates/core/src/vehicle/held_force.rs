@@ -235,18 +235,8 @@ impl<'a> HeldForceRun<'a> {
         if self.coming.is_driven() {
             return state;
         }
-        let mut after = VehicleState::from_array(state);
-        let before = VehicleState::from_array(self.run.state);
-        let energy_j = |x: &VehicleState<f64>| self.run.constants.planar_energy_j(x);
-        let by_slope_j = self.run.constants.energy_by_slope_j(&before, &after).unwrap_or(0.0);
-        let (before_j, after_j) = ((energy_j(&before) + by_slope_j).max(0.0), energy_j(&after));
-        if after_j > before_j {
-            let share = (before_j / after_j).sqrt();
-            after.vx_body_m_s *= share;
-            after.vy_body_m_s *= share;
-            after.yaw_rate_rad_s *= share;
-        }
-        after.to_array()
+        let [before, after] = [self.run.state, state].map(VehicleState::from_array);
+        self.run.constants.without_energy_gain(&before, after).to_array()
     }
 
     /// Tells the driver how far the car that this one has struck has turned since the first contact, rad;

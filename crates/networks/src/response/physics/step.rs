@@ -150,36 +150,13 @@ fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
     }
     let next = VehicleState::from_array(next);
     let is_free = u.collision.is_none() && !u.is_driven();
-    if is_free { without_energy_gain(constants, x, next) } else { next }
+    if is_free { constants.without_energy_gain(x, next) } else { next }
 }
 
 /// The time derivative of a state with a residual acceleration.
 #[inline(always)]
 fn with_residual<T: Lanes>(derivative: [T; N_STATE], residual: [T; N_RESIDUAL]) -> [T; N_STATE] {
     VehicleState::from_array(derivative).accelerated(residual).to_array()
-}
-
-#[inline(always)]
-fn without_energy_gain<P: Copy, T: Lanes + LanesOver<P>>(
-    constants: &VehicleConstants<P>,
-    before: &VehicleState<T>,
-    mut after: VehicleState<T>,
-) -> VehicleState<T> {
-    let (kinetic, new) = (constants.planar_energy_j(before), constants.planar_energy_j(&after));
-    let old = match constants.energy_by_slope_j(before, &after) {
-        Some(by_slope) => {
-            let (sum, none) = (kinetic + by_slope, kinetic.constant(0.0));
-            sum.if_less(none, none, sum)
-        }
-        None => kinetic,
-    };
-    if old.any_less(new) {
-        let share = old.if_less(new, (old / new).sqrt(), old.constant(1.0));
-        after.vx_body_m_s *= share;
-        after.vy_body_m_s *= share;
-        after.yaw_rate_rad_s *= share;
-    }
-    after
 }
 
 #[cfg(test)]

@@ -8,7 +8,9 @@ use crate::response::physics::step::StepModel;
 use crate::response::predict::latents::{Latents, N_LATENTS};
 use crate::response::{Correction, N_FEATURES, N_RESIDUAL};
 use impactlab_core::numerics::Lanes;
-use impactlab_core::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
+use impactlab_core::vehicle::{
+    VehicleConstants, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState,
+};
 
 /// Vehicle, network and latent factors: all that a step needs besides the state.
 pub(crate) struct Dynamics<'a> {
@@ -108,14 +110,12 @@ impl<'a> Dynamics<'a> {
         time_s: f64,
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
-        let now = self.model.constants.evaluate(x, u);
-        let correction = self.correction_at(component, latents, (x, &now), time_s, batch);
-        self.network.correction().step_from(&self.model, x, u, &now.derivative, correction)
+        let correction = self.correction(component, latents, x, u, time_s, batch);
+        self.network.correction().step(self.vehicle, x, u, correction)
     }
 
     /// One step after what was learned from, at given latent factors. The correction does not keep up the
-    /// motion of a vehicle that nothing drives: of the energy that tires and resistance take it gives back
-    /// [`GIVEN_BACK_SHARE`] at most.
+    /// motion of a vehicle that nothing drives.
     pub(crate) fn step_beyond(
         &self,
         component: usize,
@@ -125,31 +125,16 @@ impl<'a> Dynamics<'a> {
         time_s: f64,
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
-        let constants = &self.model.constants;
-        let now = constants.evaluate(x, u);
+        let now = self.model.constants.evaluate(x, u);
         let correction = self.correction_at(component, latents, (x, &now), time_s, batch);
         let kind = self.network.correction();
         let step = |value| kind.step_from(&self.model, x, u, &now.derivative, value);
-        let mut next = step(correction);
+        let corrected = step(correction);
         if kind == Correction::Acceleration && u.collision.is_none() && !u.is_driven() {
-            // Both ends are looked at and not the powers: what tires take sideways at the beginning of a
-            // step is not what they take over it.
-            let energy_j = |x: &VehicleState<f64>| constants.planar_energy_j(x);
-            let brought_j = |end: &VehicleState<f64>| {
-                energy_j(x) + constants.energy_by_slope_j(x, end).unwrap_or(0.0)
-            };
             let uncorrected = step([0.0; N_RESIDUAL]);
-            let taken_j = (brought_j(&uncorrected) - energy_j(&uncorrected)).max(0.0);
-            let most_j = (brought_j(&next) - (1.0 - GIVEN_BACK_SHARE) * taken_j).max(0.0);
-            let is_j = energy_j(&next);
-            if is_j > most_j {
-                let share = (most_j / is_j).sqrt();
-                next.vx_body_m_s *= share;
-                next.vy_body_m_s *= share;
-                next.yaw_rate_rad_s *= share;
-            }
+            return not_kept_up(&self.model.constants, x, &uncorrected, corrected);
         }
-        next
+        corrected
     }
 
     /// The correction over a step at given latent factors, bounded.
@@ -286,9 +271,60 @@ impl<'a> Dynamics<'a> {
     }
 }
 
+/// The end of a step of a vehicle that nothing drives: of the energy that tires and resistance take, the
+/// correction gives back [`GIVEN_BACK_SHARE`] at most.
+///
+/// - `x`: the state at the beginning;
+/// - `uncorrected`, `corrected`: the ends without the correction and with it. Both are looked at and not the
+///   powers: what tires take sideways at the beginning of a step is not what they take over it.
+fn not_kept_up(
+    constants: &VehicleConstants<f64>,
+    x: &VehicleState<f64>,
+    uncorrected: &VehicleState<f64>,
+    corrected: VehicleState<f64>,
+) -> VehicleState<f64> {
+    let brought_j = |end: &VehicleState<f64>| constants.energy_brought_j(x, end);
+    let taken_j = (brought_j(uncorrected) - constants.planar_energy_j(uncorrected)).max(0.0);
+    let most_j = brought_j(&corrected) - (1.0 - GIVEN_BACK_SHARE) * taken_j;
+    constants.with_energy_up_to(corrected, most_j)
+}
+
 /// `sum += factor · values`.
 fn add(sum: &mut [f64; N_RESIDUAL], factor: f64, values: &[f64; N_RESIDUAL]) {
     for (sum, value) in sum.iter_mut().zip(values) {
         *sum += factor * value;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::{Preset, RoadSlope};
+
+    #[test]
+    fn a_correction_gives_back_half_of_what_is_taken_at_most() {
+        let constants = Preset::Reference.parameters().constants();
+        let [start, uncorrected] = [10.0, 9.0].map(VehicleState::driving_straight);
+        // v² = 100 − ½ (100 − 81)
+        let most_m_s = 90.5_f64.sqrt();
+        for (corrected_m_s, expected_m_s) in [(8.5, 8.5), (9.5, 9.5), (10.0, most_m_s)] {
+            let corrected = VehicleState::driving_straight(corrected_m_s);
+            let end = not_kept_up(&constants, &start, &uncorrected, corrected);
+            assert!((end.vx_body_m_s - expected_m_s).abs() < 1e-12, "{corrected_m_s}: {end:?}");
+        }
+    }
+
+    /// Half a millimetre too far uphill, with no velocity left: no energy may be there, and none is.
+    #[test]
+    fn a_car_that_turns_round_on_a_slope_stands_there() {
+        let mut vehicle = Preset::Reference.parameters();
+        vehicle.slope = RoadSlope { grade: 0.05, cross_slope: 0.0 };
+        let constants = vehicle.constants();
+        let start = VehicleState::driving_straight(0.01);
+        let end = VehicleState { x_m: 6e-4, ..VehicleState::default() };
+        assert!(constants.energy_brought_j(&start, &end) < 0.0);
+        assert_eq!(not_kept_up(&constants, &start, &end, end), end);
+        let slow = VehicleState { x_m: 6e-4, ..VehicleState::driving_straight(1e-3) };
+        assert_eq!(not_kept_up(&constants, &start, &end, slow), end, "no more than is there");
     }
 }
