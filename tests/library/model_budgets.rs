@@ -147,6 +147,11 @@ fn factors_of_a_calibration_without_a_meaning_are_refused() {
             "record.variance_factors.peak.spread is 0, expected a number above 0",
         ),
         (
+            "/record/variance_factors/peak/spread",
+            11.0,
+            "record.variance_factors.peak.spread is 11, expected -10 to 10",
+        ),
+        (
             "/record/variance_factors/far/distance/0",
             -1.0,
             "record.variance_factors.far.distance[0] is -1, expected 0 or more",

@@ -21,10 +21,10 @@
 //! Left out: bounds. A duration or a force drawn far from its mean may have the wrong sign.
 
 use nalgebra::DMatrix;
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
-use crate::uncertainty::{CURVE_INTERVAL_S, ForceCurve, MixtureError, NormalMixture, NormalPart};
+use crate::uncertainty::{
+    CURVE_INTERVAL_S, ForceCurve, MixtureError, NormalMixture, NormalPart, PeakFactors,
+};
 
 /// One component of a [`CurveMixture`]. With T instants a row has 2T + 1 values: forces in N, then
 /// the duration in s.
@@ -44,44 +44,6 @@ pub struct CurveComponent {
     pub lag_correlation: f64,
     /// How the peak of a drawn curve is told.
     pub peak: PeakFactors,
-}
-
-/// Factors on the peaks of drawn curves.
-///
-/// ```text
-/// peak = scale · p̄ · (p / p̄)^spread      p: largest |F| of the drawn curve, p̄: of the mean curve
-/// ```
-///
-/// A normal distribution of the forces at all instants that is right about them and about their impulse
-/// need not be so about the largest of them: drawn curves are rougher than recorded ones, and mean curves
-/// flatter.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PeakFactors {
-    /// Factor on all peaks.
-    pub scale: f64,
-    /// Factor on the deviation of their logarithms.
-    pub spread: f64,
-}
-
-impl Default for PeakFactors {
-    /// Factors that leave peaks unchanged.
-    fn default() -> Self {
-        Self { scale: 1.0, spread: 1.0 }
-    }
-}
-
-impl PeakFactors {
-    /// The peak that is told.
-    ///
-    /// - `peak_n`: that of the drawn curve, N;
-    /// - `mean_n`: that of the mean curve, N; where it is zero, the peak stays as it is.
-    pub fn apply(self, peak_n: f64, mean_n: f64) -> f64 {
-        match mean_n > 0.0 {
-            true => self.scale * mean_n * (peak_n / mean_n).powf(self.spread),
-            false => peak_n,
-        }
-    }
 }
 
 /// A mixture of [`CurveComponent`]s whose weights sum to one, whose shapes are equal and whose
@@ -306,6 +268,7 @@ impl CurveComponent {
         let finite = [
             ("mean", self.mean.iter().all(|value| value.is_finite())),
             ("factors", self.factors.iter().all(|value| value.is_finite())),
+            ("peak factors", self.peak.scale.is_finite() && self.peak.spread.is_finite()),
         ];
         if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
             return Err(MixtureError::NotFinite { component, what });
@@ -429,6 +392,9 @@ pub(crate) mod tests {
         let mut bad = good();
         bad.mean[0] = f64::NAN;
         assert!(matches!(refused(bad), MixtureError::NotFinite { what: "mean", .. }));
+        let peak = PeakFactors { scale: f64::NAN, spread: 1.0 };
+        let bad = CurveComponent { peak, ..good() };
+        assert!(matches!(refused(bad), MixtureError::NotFinite { what: "peak factors", .. }));
         let bad = CurveComponent { weight: -1.0, ..good() };
         assert!(matches!(refused(bad), MixtureError::Weight { .. }));
         assert_eq!(refused(CurveComponent { weight: 0.0, ..good() }), MixtureError::NoWeight);

@@ -33,6 +33,7 @@ mod curve;
 mod normal_mixture;
 
 mod mixture;
+mod peak_factors;
 
 mod bands;
 mod magnitude;
@@ -52,8 +53,9 @@ pub use caveat_kind::{CaveatKind, CaveatSubject};
 pub use caveats::Caveats;
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;
-pub use mixture::{CurveComponent, CurveMixture, PeakFactors};
+pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
+pub use peak_factors::PeakFactors;
 pub use planar::{PlanarMixture, PlanarPart};
 pub use planar_grid::{PlanarGrid, PlanarKernel};
 pub use sample::CurveQuantities;

@@ -1,24 +1,17 @@
 //! Calibration of a trained network: factors on its variances, with which its intervals
 //! contain their nominal share of the observed values, near the training cases and far from them.
 
-use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
-use crate::nn::{Expected, NnError, check_number};
-use impactlab_core::numerics::normal_cdf;
-use impactlab_core::numerics::random_stream;
-use impactlab_core::uncertainty::{
-    CURVE_INTERVAL_S, CurveComponent, CurveMixture, CurveQuantities, PeakFactors,
+use crate::force::train::held_shares::{
+    CALIBRATED_SHARE, Held, held_durations, held_forces, held_impulses,
 };
+use crate::force::train::peaks::peak_factors;
+use crate::nn::{Expected, NnError, check_number};
+use impactlab_core::uncertainty::{CurveComponent, CurveMixture, PeakFactors};
 
-/// Nominal share of the central intervals that are calibrated.
-const CALIBRATED_SHARE: f64 = 0.9;
-/// Nominal shares of the intervals by which the factors of shapes and peaks are chosen: of few cases, one
-/// share alone is held by factors as well that are far too large.
-const SHARES: [f64; 2] = [0.5, CALIBRATED_SHARE];
 /// Logarithms of the smallest and largest factor.
 const MOST_EXTREME_LOG_FACTORS: [f64; 2] = [-6.0, 4.0];
 /// Number of bisection steps for a factor.
@@ -28,12 +21,8 @@ const N_STEPS: usize = 20;
 /// drawn curves rough, so that it stays small.
 const SHARED_PER_IMPULSE: Tried = Tried { n: 15, range: [0.25, 32.0] };
 const SINGLE: Tried = Tried { n: 4, range: [0.25, 2.0] };
-/// Factors on the deviation of peaks that are tried.
-const PEAK_SPREAD: Tried = Tried { n: 31, range: [0.25, 8.0] };
 /// Largest spread of peaks, and logarithm of their scale, of a file that is read.
 const MOST_PEAK_FACTOR: f64 = 10.0;
-/// Number of draws of a case for its peak.
-const N_PEAK_DRAWS: usize = 200;
 /// Smallest number of cases for a calibration.
 const LEAST_CASES: usize = 8;
 /// One case in so many is far from the others; smallest number of cases of which this share is
@@ -60,13 +49,13 @@ pub struct VarianceFactors {
 }
 
 /// Factors that are tried, at equal steps of their logarithm.
-struct Tried {
-    n: usize,
-    range: [f64; 2],
+pub(super) struct Tried {
+    pub(super) n: usize,
+    pub(super) range: [f64; 2],
 }
 
 impl Tried {
-    fn factors(self) -> impl Iterator<Item = f64> {
+    pub(super) fn factors(self) -> impl Iterator<Item = f64> {
         let [low, high] = self.range;
         (0..self.n).map(move |i| low * f64::powf(high / low, i as f64 / (self.n - 1) as f64))
     }
@@ -236,7 +225,7 @@ impl VarianceFactors {
         }
     }
 
-    fn apply(self, mixture: CurveMixture) -> CurveMixture {
+    pub(super) fn apply(self, mixture: CurveMixture) -> CurveMixture {
         mixture.map_components(|component| self.widen(component))
     }
 
@@ -292,129 +281,11 @@ fn smallest(n_steps: usize, held: impl Fn(f64) -> Held) -> f64 {
     high.exp()
 }
 
-/// The share of observed values inside the central intervals of each of [`SHARES`], as half a value more
-/// inside and half a one more outside would have it: none and all are no certainty.
-#[derive(Debug, Clone, Copy)]
-struct Held([f64; SHARES.len()]);
-
-impl Held {
-    /// Counts observed values by the predicted probability of a smaller one.
-    fn of(below: &[f64]) -> Self {
-        Self(SHARES.map(|share| {
-            let tail = (1.0 - share) / 2.0;
-            let inside = below.iter().filter(|below| (tail..=1.0 - tail).contains(*below));
-            (inside.count() as f64 + 0.5) / (below.len() as f64 + 1.0)
-        }))
-    }
-
-    /// That of [`CALIBRATED_SHARE`].
-    fn calibrated(self) -> f64 {
-        self.0[SHARES.len() - 1]
-    }
-
-    /// Sum of the squared differences from the nominal shares, in logarithms of the odds: from 90 %, 80 %
-    /// are as far as 95.
-    fn off(self) -> f64 {
-        let log_odds = |share: f64| (share / (1.0 - share)).ln();
-        let off = |(held, share): (&f64, f64)| (log_odds(*held) - log_odds(share)).powi(2);
-        self.0.iter().zip(SHARES).map(off).sum()
-    }
-}
-
-/// The forces F_x and F_y during contact in their intervals.
-fn held_forces(cases: &[CalibrationCase<'_>], factors: VarianceFactors) -> Held {
-    let below = cases.iter().flat_map(|CalibrationCase { case, mixture, .. }| {
-        let mixture = factors.apply(mixture.clone());
-        let observed = case.curve.to_values();
-        let n_instants = observed.len() / 2;
-        let last_s = case.onset_s + case.curve.duration_s;
-        let n_contact = ((last_s / CURVE_INTERVAL_S).ceil() as usize).min(n_instants);
-        // Every second instant is sufficient because neighbouring values are strongly correlated.
-        let instants = (0..n_contact).step_by(2);
-        let values: Vec<usize> = instants.flat_map(|t| [t, n_instants + t]).collect();
-        let below = move |idx: usize| -> f64 {
-            let below = mixture.components().iter().map(|component| {
-                let row = component.factors.row(idx);
-                let variance = row.norm_squared() + component.variance[idx];
-                component.weight
-                    * normal_cdf((observed[idx] - component.mean[idx]) / variance.sqrt())
-            });
-            below.sum()
-        };
-        values.into_iter().map(below).collect::<Vec<f64>>()
-    });
-    Held::of(&below.collect::<Vec<f64>>())
-}
-
-/// The impulses P_x and P_y in their intervals.
-fn held_impulses(cases: &[CalibrationCase<'_>], factors: VarianceFactors) -> Held {
-    let below = cases.iter().flat_map(|CalibrationCase { case, mixture, .. }| {
-        let mixture = factors.apply(mixture.clone());
-        [0, 1].map(|axis| mixture.impulse(axis).cdf(case.impulse_n_s[axis]))
-    });
-    Held::of(&below.collect::<Vec<f64>>())
-}
-
-/// The durations in their intervals.
-fn held_durations(cases: &[CalibrationCase<'_>], factors: VarianceFactors) -> Held {
-    let below = cases.iter().map(|CalibrationCase { case, mixture, .. }| {
-        factors.apply(mixture.clone()).duration_s().cdf(case.curve.duration_s)
-    });
-    Held::of(&below.collect::<Vec<f64>>())
-}
-
-/// Logarithms of the peaks of a case: observed, and of each draw that of the mean curve of its component
-/// and of what the draw has more.
-struct LogPeaks {
-    observed: f64,
-    drawn: Vec<[f64; 2]>,
-}
-
-impl LogPeaks {
-    fn new(case: &CalibrationCase<'_>, factors: VarianceFactors, idx: usize, seed: u64) -> Self {
-        let [means, peaks] = [0.0, 1.0].map(|spread| {
-            let peak = PeakFactors { scale: 1.0, spread };
-            let mixture = VarianceFactors { peak, ..factors }.apply(case.mixture.clone());
-            let mut rng: ChaCha8Rng = random_stream(seed, "calibration of peaks", idx as u64);
-            mixture.sample_quantities(N_PEAK_DRAWS, &mut rng).1.peak_n
-        });
-        let pair = |(mean, peak): (&f64, &f64)| [mean.ln(), (peak / mean).ln()];
-        let drawn = means.iter().zip(&peaks).map(pair).collect();
-        Self { observed: case.case.peak_n.ln(), drawn }
-    }
-
-    /// How far the observed peak lies above those that are told with a factor on their deviation.
-    fn above(&self, spread: f64) -> Vec<f64> {
-        self.drawn.iter().map(|[mean, more]| self.observed - mean - spread * more).collect()
-    }
-}
-
-/// Factors on the peaks of curves with given factors.
-fn peak_factors(cases: &[CalibrationCase<'_>], factors: VarianceFactors, seed: u64) -> PeakFactors {
-    let of_case = |(idx, case)| LogPeaks::new(case, factors, idx, seed);
-    let peaks: Vec<LogPeaks> = cases.par_iter().enumerate().map(of_case).collect();
-    let middle = |values: &[f64]| CurveQuantities::median(values).unwrap_or(0.0);
-    let mut best = (f64::INFINITY, PeakFactors::default());
-    for spread in PEAK_SPREAD.factors() {
-        let above: Vec<Vec<f64>> = peaks.iter().map(|case| case.above(spread)).collect();
-        let log_scale = middle(&above.iter().map(|case| middle(case)).collect::<Vec<_>>());
-        let below = above.iter().map(|case| {
-            let n_below = case.iter().filter(|above| **above > log_scale).count();
-            n_below as f64 / case.len().max(1) as f64
-        });
-        let off = Held::of(&below.collect::<Vec<f64>>()).off();
-        // Of equal ones the widest.
-        if off <= best.0 && log_scale.is_finite() {
-            best = (off, PeakFactors { scale: log_scale.exp(), spread });
-        }
-    }
-    best.1
-}
-
 #[cfg(test)]
 mod tests {
     use nalgebra::DMatrix;
     use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
 
     use super::*;
     use crate::force::input::shipped;

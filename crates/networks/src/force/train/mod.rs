@@ -5,6 +5,8 @@ mod batch;
 mod loss;
 
 mod calibration;
+mod held_shares;
+mod peaks;
 
 mod record;
 
