@@ -486,18 +486,3 @@ fn a_question_that_is_printed_has_the_same_answer_when_it_is_asked() {
     let ran = impactlab(&["ask", text(&wrong)]);
     assert!(ran.error_line().contains("is no request"), "{}", ran.err);
 }
-
-/// A friction that is misspelt was left out, and the answer was that of another road.
-#[test]
-fn a_question_with_a_key_that_it_does_not_have_is_refused() {
-    let folder = TempDir::new().unwrap();
-    let drive = "{\"question\": \"simulate\", \"source\": {\"drive\": {\"speed_m_s\": 20";
-    for (key, rest) in
-        [("frictoin", "}}, \"frictoin\": 0.3}"), ("speed_km_h", ", \"speed_km_h\": 9}}}")]
-    {
-        let wrong = write(&folder, "wrong.json", &format!("{drive}{rest}"));
-        let ran = impactlab(&["ask", text(&wrong)]);
-        let error = ran.error_line();
-        assert!(error.contains(&format!("unknown field `{key}`")), "{}", ran.err);
-    }
-}

@@ -78,11 +78,12 @@ pub use questions::impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactReques
 pub use questions::predict::force::{
     ForceQuestion, ImpulseReport, PredictForceAnswer, PredictForceReport, PredictForceRequest,
 };
+pub use questions::predict::force_source::ForceSource;
 pub use questions::predict::implied_contact::{ImpliedContactReport, MomentumReport};
 pub use questions::predict::impulse_rival::ImpulseRival;
 pub use questions::predict::motion::{
-    COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
-    PredictMotionRequest, StrikingReport,
+    COARSE_DRAWS, DEFAULT_DRAWS, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest,
+    StrikingReport,
 };
 pub use questions::predict::recorded_impulse::RecordedImpulse;
 pub use questions::reconstruct::later_contacts::LaterContactsReport;

@@ -7,7 +7,6 @@ use impactlab_core::data::Outcome;
 use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::units::{Estimate, Interval};
 use impactlab_draw::DensityGpu;
-use impactlab_networks::response::STEP_S;
 use impactlab_study::analysis::{DensityMap, DensityTask, MotionBands};
 use impactlab_study::{
     Answer, Library, Observer, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest,
@@ -37,7 +36,7 @@ pub struct MotionAnswer {
 impl MotionAnswer {
     /// Time of the last instant, s.
     pub fn end_s(&self) -> f64 {
-        self.answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
+        self.answer.forecast.end_s()
     }
 
     /// Whether the force that drives the motion was predicted by a force network.

@@ -19,7 +19,7 @@ use impactlab_core::ranges::{
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_networks::response::STEP_S;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::analysis::{MotionForecast, PulseSetup};
+use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
     Answer, DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
     PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateRequest,
@@ -197,7 +197,7 @@ pub(in crate::cli) fn run(
     let folder = args.out.as_deref().ok_or(CliError::NothingToPredict)?;
     let out = (folder, existing, &KNOWN_FILES[..]);
     let answer = console.ask_into(&request, Some(out), |output, answer| {
-        check_window_end(args.window, duration_s(&answer.forecast))?;
+        check_window_end(args.window, answer.forecast.end_s())?;
         let (staging, units) = (output.staging(), args.units.into());
         let wanted = MotionFiles { folder: staging, window_s: args.window, units };
         let names = write_motion_prediction(&wanted, answer)?;
@@ -213,11 +213,6 @@ pub(in crate::cli) fn run(
     let report = &answer.report;
     console.print(&printed, |out| print_answer(out, report, args.units.into()))?;
     Ok(Verdict::Clean)
-}
-
-/// Duration of a predicted motion, s.
-pub(super) fn duration_s(forecast: &MotionForecast) -> f64 {
-    forecast.central.len().saturating_sub(1) as f64 * STEP_S
 }
 
 /// Refuses a window of time that ends after the motion.

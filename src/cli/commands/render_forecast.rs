@@ -3,7 +3,7 @@
 use clap::Args;
 
 use crate::cli::CliError;
-use crate::cli::commands::predict_motion::{check_window_end, duration_s};
+use crate::cli::commands::predict_motion::check_window_end;
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::console::Console;
@@ -69,7 +69,7 @@ pub(super) fn figure(
     };
     let answer = console.answer(&request)?;
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);
-    let duration_s = duration_s(forecast);
+    let duration_s = forecast.end_s();
     check_window_end(args.window, duration_s)?;
     let at_s = args.time.unwrap_or(duration_s);
     if !(0.0..=duration_s).contains(&at_s) {

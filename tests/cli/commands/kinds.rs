@@ -69,3 +69,18 @@ fn check_says_what_a_bad_file_was_taken_for() {
         assert!(problem["message"].as_str().unwrap().contains(message), "{problem}");
     }
 }
+
+/// A friction that is misspelt was left out, and the answer was that of another road.
+#[test]
+fn a_question_with_a_key_that_it_does_not_have_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let drive = "{\"question\": \"simulate\", \"source\": {\"drive\": {\"speed_m_s\": 20";
+    for (key, rest) in
+        [("frictoin", "}}, \"frictoin\": 0.3}"), ("speed_km_h", ", \"speed_km_h\": 9}}}")]
+    {
+        let wrong = write(&folder, "wrong.json", &format!("{drive}{rest}"));
+        let ran = impactlab(&["ask", text(&wrong)]);
+        let error = ran.error_line();
+        assert!(error.contains(&format!("unknown field `{key}`")), "{}", ran.err);
+    }
+}

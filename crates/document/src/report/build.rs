@@ -136,6 +136,7 @@ impl Builder<'_> {
         blocks.extend(change_notice(&self.report.changes, wording, paths));
         blocks.extend(self.unanswered(variants));
         blocks.extend(self.disagreements(variants));
+        blocks.extend(self.other_networks());
         blocks.extend(opinion_blocks(Asked { case, on_disk, variants, wording, paths }));
         blocks
     }
@@ -211,19 +212,17 @@ impl Builder<'_> {
         [text].into_iter().chain(self.other_networks()).chain(blocks).collect()
     }
 
-    /// That networks answered which are not the shipped ones, of which alone the measurements are.
+    /// That networks answered which are not the default ones, of which alone limits and measurements are.
     fn other_networks(&self) -> Option<Block> {
-        let shipped = ModelChoice::default().to_string();
-        let mut others: Vec<String> = Vec::new();
-        for model in self.report.models().iter().filter(|model| model.name != shipped) {
+        let models = self.report.models();
+        let others = models.iter().filter(|model| !ModelChoice::is_default(&model.name));
+        let told = others.map(|model| {
             let name = self.wording.name(&self.paths.shown(&model.name));
-            others.push(format!("{} ({name})", network_name(&model.network, self.wording)));
-        }
-        others.sort();
-        others.dedup();
-        let text = self.wording.words.validation_other_networks;
-        let list = [("list", &*others.join(", "))];
-        (!others.is_empty()).then(|| Block::Notice { text: fill(text, &list) })
+            format!("{} ({name})", network_name(&model.network, self.wording))
+        });
+        let list = told.collect::<BTreeSet<_>>().into_iter().collect::<Vec<_>>().join(", ");
+        let text = self.wording.words.other_networks;
+        (!list.is_empty()).then(|| Block::Notice { text: fill(text, &[("list", &list)]) })
     }
 
     fn sensitivity(&self, variants: &[VariantParts]) -> Vec<Block> {

@@ -89,3 +89,124 @@ impl Wording {
         if has_words { self.local(&self.term(cell)) } else { self.local(cell) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Language;
+    use crate::report::language::{Words, words_of};
+    use impactlab_study::{HeldIntervals, Library, ModelChoice};
+
+    const VALIDATION: &str = include_str!("../../../../docs/VALIDATION.md");
+    const LIMITS: &str = include_str!("../../../../docs/guide/limits.md");
+    const README: &str = include_str!("../../../../README.md");
+
+    fn words() -> [&'static Words; 2] {
+        [Language::En, Language::De].map(words_of)
+    }
+
+    fn assert_each_says(told: &[(&str, String)]) {
+        for (text, part) in told {
+            assert!(text.contains(&**part), "{part:?} is not said");
+        }
+    }
+
+    #[test]
+    fn texts_say_what_the_default_networks_learned_from() {
+        let (library, choice) = (Library::default(), ModelChoice::default());
+        let force = library.force_model(&choice).unwrap();
+        let response = library.response_model(&choice).unwrap();
+        let n_impacts = force.record().train.len() + force.record().detail.validation.len();
+        let n_motions = response.record().train.len();
+        let n_cars = response.population().unwrap().cars().len();
+        let impacts = format!("learned from {n_impacts} simulated impacts");
+        let motions = format!("from {n_motions} simulated trajectories of {n_cars} cars");
+        let [en, de] = words();
+        assert_each_says(&[
+            (en.limits_force, impacts.clone()),
+            (de.limits_force, format!("aus {n_impacts} simulierten Stößen")),
+            (en.limits_response, format!("simulated motions of {n_cars} cars")),
+            (de.limits_response, format!("simulierten Bewegungen von {n_cars} Fahrzeugen")),
+            (LIMITS, impacts.clone()),
+            (LIMITS, motions.clone()),
+            (README, impacts),
+            (README, motions),
+            (VALIDATION, format!("Shipped model: {n_impacts} training cases")),
+        ]);
+    }
+
+    #[test]
+    fn texts_say_how_many_cases_were_held_out_and_what_their_intervals_held() {
+        let held = |subject| &Measurement::shipped(subject).unwrap().held;
+        let (forces, motions) = (held(Measured::ForceNetwork), held(Measured::ResponseNetwork));
+        let percent = |name: &str| {
+            let of = forces.iter().find(|of: &&HeldIntervals| of.quantity == name).unwrap();
+            100 * of.in_90 / of.n
+        };
+        let [n_forces, n_motions] = [forces, motions].map(|held| held.first().unwrap().n);
+        let [en, de] = words();
+        assert_eq!(percent("impulse"), 100);
+        assert_each_says(&[
+            (en.validation_force, format!("against {n_forces} finite-element runs")),
+            (de.validation_force, format!("gegen {n_forces} Finite-Elemente-Rechnungen")),
+            (en.validation_response, format!("against {n_motions} simulated motions")),
+            (de.validation_response, format!("gegen {n_motions} simulierte Bewegungen")),
+            (
+                LIMITS,
+                format!(
+                    "its intervals of the peak {} %, of the duration {} % and of the impulse all",
+                    percent("peak"),
+                    percent("duration")
+                ),
+            ),
+        ]);
+    }
+
+    /// What stands in texts of the collisions of the whole range is what the table of the measurement says.
+    #[test]
+    fn texts_say_of_fast_collisions_what_was_measured() {
+        let mut lines = VALIDATION.lines().skip_while(|line| !line.ends_with("| duration held |"));
+        let cells = |line: &'static str| line.split('|').map(str::trim).collect::<Vec<_>>();
+        let (header, row) = (cells(lines.next().unwrap()), cells(lines.nth(1).unwrap()));
+        let at = |title: &str| row[header.iter().position(|of| *of == title).unwrap()];
+        assert_eq!(row[1], "force network");
+        let n = header[1].strip_suffix(" cases").unwrap();
+        let rounded = |number: &str| number.parse::<f64>().unwrap().round();
+        let (median, mean) = at("impulse").trim_end_matches(')').split_once(" (").unwrap();
+        let (median, mean) = (rounded(median), rounded(mean));
+        let held = |title| at(title).split_once(", ").unwrap().1;
+        let [impulse, peak, duration] =
+            [held("impulse held"), held("peak held"), held("duration held")];
+        let [en, de] = words();
+        assert_each_says(&[
+            (en.validation_force, format!("Of {n} others")),
+            (
+                en.validation_force,
+                format!(
+                    "held {impulse} % of the impulses, {peak} % of the peaks and {duration} % of the durations; \
+                     it erred there by {mean} % of the impulse in the mean, and by {median} % in the median"
+                ),
+            ),
+            (de.validation_force, format!("Von {n} anderen")),
+            (
+                de.validation_force,
+                format!(
+                    "{impulse} % der Impulse, {peak} % der größten Kräfte und {duration} % der Dauern; der \
+                     Fehler des Impulses war dort im Mittel {mean} %, im Median {median} %"
+                ),
+            ),
+            (LIMITS, format!("On {n} other cases")),
+            (
+                LIMITS,
+                format!("errs by {median} % of the impulse in the median and {mean} % in the mean"),
+            ),
+            (
+                LIMITS,
+                format!(
+                    "its intervals of the impulse {impulse} %, of the peak {peak} % and of the \
+                     duration {duration} %"
+                ),
+            ),
+        ]);
+    }
+}

@@ -102,11 +102,17 @@ pub struct MotionForecast {
     pub applicability: Applicability,
 }
 
+impl MotionForecast {
+    /// Time of the last instant, s.
+    pub fn end_s(&self) -> f64 {
+        self.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
+    }
+}
+
 /// State of the vehicle at rest, or at the end of the forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MotionOutcome {
-    /// Time from the start of the impact since which the last draw that comes to rest is at rest, or
-    /// duration of the forecast, s.
+    /// Time from the start of the impact since which all draws are at rest, or duration of the forecast, s.
     pub time_s: f64,
     /// Whether the vehicle comes to rest in 95 % of the draws: after the end of the force, speed and yaw rate
     /// fall below [`REST_SPEED_M_S`](impactlab_core::vehicle::REST_SPEED_M_S) and

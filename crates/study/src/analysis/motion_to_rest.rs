@@ -7,7 +7,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use rayon::prelude::*;
 
-use crate::analysis::rest_outcome::SHARE_AT_REST;
 use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
 use impactlab_core::units::Estimate;
@@ -157,7 +156,7 @@ fn end_of(motion: &SettledMotion) -> Option<MotionEnd> {
     (is_finite && end.distance_m.is_finite()).then_some(end)
 }
 
-/// The end of the forecast, over the draws: where nearly all are at rest, the last of them since its time.
+/// The end of the forecast, over the draws: where nearly all are at rest, its time is that of the last to end.
 ///
 /// - `counts`: forces and vehicles, which take turns in the draws.
 fn outcome(
@@ -174,11 +173,11 @@ fn outcome(
     let mean = |quantity: fn(&MotionEnd) -> f64| {
         ends.iter().map(quantity).sum::<f64>() / ends.len() as f64
     };
-    let is_at_rest = rest.share_at_rest >= SHARE_AT_REST;
-    let rests_s = ends.iter().filter(|end| end.is_at_rest).map(|end| end.time_s);
+    let is_at_rest = rest.is_nearly_all_at_rest();
     MotionOutcome {
+        // A draw that still moves ends with the forecast.
         time_s: match is_at_rest {
-            true => rests_s.fold(0.0, f64::max),
+            true => ends.iter().map(|end| end.time_s).fold(0.0, f64::max),
             false => n_instants.saturating_sub(1) as f64 * STEP_S,
         },
         is_at_rest,
@@ -291,6 +290,15 @@ mod tests {
         let draws: Vec<SettledMotion> = (0..100).map(draw).collect();
         let outcome = SettledDraws::new(draws, [1, 1], 400, 4.0, 0.0).unwrap().outcome;
         assert_eq!((outcome.is_at_rest, outcome.time_s), (true, 4.0 * STEP_S));
+    }
+
+    /// Places of the end were those of one time, and the density was that of another.
+    #[test]
+    fn where_a_few_draws_still_move_the_end_is_that_of_the_forecast() {
+        let draw = |i: usize| motion(1.0 + 0.01 * i as f64, 0.0, (i > 2).then_some(3));
+        let draws: Vec<SettledMotion> = (0..100).map(draw).collect();
+        let outcome = SettledDraws::new(draws, [1, 1], 6, 4.0, 0.0).unwrap().outcome;
+        assert_eq!((outcome.is_at_rest, outcome.time_s), (true, 5.0 * STEP_S));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use impactlab_core::units::Estimate;
 
 /// Share of the draws at rest with which the vehicle is said to be at rest: the upper end of an interval
 /// of 90 %.
-pub(super) const SHARE_AT_REST: f64 = 0.95;
+const SHARE_AT_REST: f64 = 0.95;
 
 /// Where one draw of a motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,10 +75,15 @@ impl RestOutcome {
         Self { x_m, y_m, yaw_rad, time_s, distance_m, region_50_m2, region_90_m2, ..*self }
     }
 
+    /// Whether 95 % of the draws come to rest: the ends of 90 % intervals are then those of motions at rest.
+    pub fn is_nearly_all_at_rest(&self) -> bool {
+        self.share_at_rest >= SHARE_AT_REST
+    }
+
     /// Time after which 95 % of the draws are at rest, s; `None` where fewer come to rest.
     pub fn nearly_all_at_rest_s(&self) -> Option<f64> {
         let [_, late_s] = self.time_s.interval(0.9)?;
-        (self.share_at_rest >= SHARE_AT_REST).then_some(late_s)
+        self.is_nearly_all_at_rest().then_some(late_s)
     }
 
     /// The outcome over draws; `None` without any.
@@ -115,6 +120,7 @@ fn poses(ends: &[MotionEnd]) -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::facts::{Term, Value};
 
     fn end(x_m: f64, yaw_rad: f64, is_at_rest: bool) -> MotionEnd {
         MotionEnd {
@@ -140,6 +146,11 @@ mod tests {
         assert_eq!(rest.nearly_all_at_rest_s(), None);
         let settled = RestOutcome::from_ends(&ends[..60], 50.0).unwrap();
         assert!(settled.moving_speed_m_s.is_none());
+        let says = |rest: &RestOutcome, term: Term| {
+            rest.facts(true).into_iter().any(|fact| fact.name == Value::Term(term))
+        };
+        assert!(says(&settled, Term::TimeToRest) && !says(&rest, Term::TimeToRest));
+        assert!(says(&rest, Term::TimeToRestOrLimit));
         let late_s = settled.nearly_all_at_rest_s().unwrap();
         assert!((28.0..29.0).contains(&late_s), "{late_s}");
         assert_eq!(RestOutcome::from_ends(&[], 50.0), None);

@@ -12,9 +12,6 @@ use crate::{ImpulseRival, PredictMotionReport};
 /// Share of the variance of the end from which on an estimate is named.
 const NAMED_SHARE: f64 = 0.1;
 
-/// Share of draws at rest from which on the ends of 90 % intervals are those of places at rest.
-pub(super) const ENOUGH_AT_REST: f64 = 0.95;
-
 /// Lanes, kerbs and zones that are named of each vehicle.
 const N_PLACES: usize = 3;
 
@@ -48,9 +45,9 @@ impl PredictMotionReport {
         match &self.rest {
             Some(rest) => {
                 // Draws that still move count with where they are then.
-                let term = match rest.share_at_rest < ENOUGH_AT_REST {
-                    true => Term::WhereAtRestOrLimit,
-                    false => Term::WhereAtRest,
+                let term = match rest.is_nearly_all_at_rest() {
+                    true => Term::WhereAtRest,
+                    false => Term::WhereAtRestOrLimit,
                 };
                 let share = Value::ShareOfDraws(rest.share_at_rest, rest.n_draws);
                 let place = place_at(&rest.x_m, &rest.y_m);

@@ -5,8 +5,8 @@ use impactlab_core::units::Quantity;
 
 use crate::PredictMotionReport;
 use crate::analysis::PlaceChance;
-use crate::facts::answer::{ENOUGH_AT_REST, place_at};
-use crate::facts::held::held_of;
+use crate::facts::answer::place_at;
+use crate::facts::held::measurement_of;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::{HeldIntervals, Measured};
 
@@ -49,7 +49,7 @@ impl PredictMotionReport {
                     words(vec![Term::At.into(), place_at(&rest.x_m, &rest.y_m)]),
                     words(vec![Term::AfterPath.into(), distance]),
                 ];
-                if rest.share_at_rest < ENOUGH_AT_REST {
+                if !rest.is_nearly_all_at_rest() {
                     parts.push(Term::OthersStillMove.into());
                 }
                 parts
@@ -119,8 +119,9 @@ impl PredictMotionReport {
             None => Measured::ResponseNetwork,
         };
         let share = |of: &HeldIntervals| of.in_90 as f64 / of.n.max(1) as f64;
-        let held = held_of(subject, &self.response_model).filter(|_| self.is_measured());
-        held?.iter().min_by(|a, b| share(a).total_cmp(&share(b)))
+        let measured = measurement_of(subject, &self.response_model);
+        let held = &measured.filter(|_| self.is_measured())?.held;
+        held.iter().min_by(|a, b| share(a).total_cmp(&share(b)))
     }
 
     fn change_sentence(&self) -> Value {

@@ -2,6 +2,7 @@
 
 use impactlab_core::numerics::wilson_interval;
 
+use crate::ModelChoice;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::{HeldIntervals, Measured, Measurement};
 
@@ -27,17 +28,14 @@ impl Measurement {
     }
 }
 
-/// How often intervals of answers by a model held, quantity by quantity; none for a model that is not the
-/// shipped one.
-pub(super) fn held_of(subject: Measured, model: &str) -> Option<&'static [HeldIntervals]> {
-    let shipped = crate::ModelChoice::default().to_string();
-    (model == shipped).then(|| Some(&*Measurement::shipped(subject)?.held)).flatten()
+/// What was measured of answers by a model; none for a model that is not the default one.
+pub(super) fn measurement_of(subject: Measured, model: &str) -> Option<&'static Measurement> {
+    ModelChoice::is_default(model).then(|| Measurement::shipped(subject)).flatten()
 }
 
-/// How often intervals of answers by a model held; none for a model that is not the shipped one.
+/// How often intervals of answers by a model held; likewise.
 pub(crate) fn held_intervals(subject: Measured, model: &str) -> Option<FactTable> {
-    let shipped = crate::ModelChoice::default().to_string();
-    (model == shipped).then(|| Measurement::shipped(subject)?.held_table()).flatten()
+    measurement_of(subject, model)?.held_table()
 }
 
 #[cfg(test)]

@@ -214,21 +214,37 @@ impl MonteCarloError {
 }
 
 impl RestOutcome {
-    /// When, where and after what distance the vehicle comes to rest. Where some of the draws still
-    /// move, the upper ends are those of the time for which they were followed.
+    /// When, where and after what distance the vehicle comes to rest. Draws that still move count with
+    /// where they are when they are followed no further; where they are more than a few, the names say so.
     ///
     /// - `is_known`: whether no second contact comes before, after which none of this has a probability.
-    pub(super) fn facts(&self, is_known: bool) -> Vec<Fact> {
+    pub(crate) fn facts(&self, is_known: bool) -> Vec<Fact> {
         let mut facts = vec![
             Fact::new(Term::ShareAtRest, Value::ShareOfDraws(self.share_at_rest, self.n_draws)),
             Fact::new(Term::RestLimit, Value::Given(Quantity::Time, self.limit_s)),
         ];
+        let [time, distance, x, y, heading] = match self.is_nearly_all_at_rest() {
+            true => [
+                Term::TimeToRest,
+                Term::DistanceToRest,
+                Term::RestX,
+                Term::RestY,
+                Term::HeadingAtRest,
+            ],
+            false => [
+                Term::TimeToRestOrLimit,
+                Term::DistanceToRestOrLimit,
+                Term::RestXOrLimit,
+                Term::RestYOrLimit,
+                Term::HeadingAtRestOrLimit,
+            ],
+        };
         let estimates = [
-            (Term::TimeToRest, Quantity::Time, &self.time_s),
-            (Term::DistanceToRest, Quantity::Length, &self.distance_m),
-            (Term::RestX, Quantity::Length, &self.x_m),
-            (Term::RestY, Quantity::Length, &self.y_m),
-            (Term::HeadingAtRest, Quantity::Angle, &self.yaw_rad),
+            (time, Quantity::Time, &self.time_s),
+            (distance, Quantity::Length, &self.distance_m),
+            (x, Quantity::Length, &self.x_m),
+            (y, Quantity::Length, &self.y_m),
+            (heading, Quantity::Angle, &self.yaw_rad),
         ];
         facts.extend(estimates.map(|(term, quantity, estimate)| match is_known {
             true => Fact::drawn(term, quantity, estimate),

@@ -184,6 +184,11 @@ terms! {
     TimeToRest: "time to rest", "Zeit bis zum Stillstand", "From the start of the motion";
     RestX: "X at rest", "X im Stillstand";
     RestY: "Y at rest", "Y im Stillstand";
+    TimeToRestOrLimit: "time to rest, or followed", "Zeit bis zum Stillstand oder verfolgt", "Draws that still move count with the time for which they are followed";
+    DistanceToRestOrLimit: "distance to rest, or followed", "Auslaufstrecke oder verfolgt", "Draws that still move count with their way until then";
+    RestXOrLimit: "X at rest, or followed", "X im Stillstand oder verfolgt", "Draws that still move count with where they are then";
+    RestYOrLimit: "Y at rest, or followed", "Y im Stillstand oder verfolgt", "Draws that still move count with where they are then";
+    HeadingAtRestOrLimit: "heading at rest, or followed", "Gierwinkel im Stillstand oder verfolgt", "Draws that still move count with their heading then";
     ShareAtRest: "comes to rest in", "kommt zum Stillstand in",
         "After the force, speed and yaw rate have fallen below 0.05 m/s and 0.01 rad/s. Draws that \
          still move count with where they are then";
@@ -427,8 +432,8 @@ terms! {
     ValidationLoss: "validation loss", "Validierungsverlust", "Of the best epoch";
     LastLoss: "last loss", "letzter Verlust", "Of the last epoch";
     Weights: "weights", "Gewichte";
-    VarianceFactors: "factors on the variances", "Faktoren auf die Varianzen",
-        "From calibration on training cases";
+    VarianceFactors: "factors of the calibration", "Faktoren der Kalibrierung",
+        "On variances and peaks, from calibration on training cases";
     FarVarianceFactors: "factors far from the cases", "Faktoren fern von den Fällen",
         "From calibration on the training cases that are farthest from the others";
     LatentScales: "uncertainty", "Unsicherheit", "Standard deviations of the latent factors";

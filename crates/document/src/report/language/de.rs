@@ -358,9 +358,9 @@ pub(super) const WORDS: Words = Words {
         Wahrheit bekannt war. Die Daten sind Simulationen, keine Messungen; kein realer Unfall \
         wurde geprüft. Quelle: docs/VALIDATION.md des Programms, mit dem Befehl zu jeder \
         Tabelle.",
-    validation_other_networks: "Geantwortet haben andere Netze als die voreingestellten: {list}. Was hier und unter den \
-        Grenzen des Verfahrens steht, sagt, woraus die voreingestellten gelernt haben und wie gut sie waren. Über diese \
-        Netze sagt es nichts: `impactlab evaluate` misst sie.",
+    other_networks: "Geantwortet haben andere Netze als die voreingestellten: {list}. Grenzen des Verfahrens und \
+        Validierung in diesem Bericht sind die der voreingestellten, die mit dem Programm kommen: woraus sie gelernt \
+        haben und wie gut sie waren. Über diese Netze sagen sie nichts: `impactlab evaluate` misst sie.",
     validation_impact: "Gegen Finite-Elemente-Rechnungen mit Annäherung von 0,8 bis 5,0 m/s; bei höherer \
         Annäherungsgeschwindigkeit ist die Stoßziffer kleiner.",
     table_impact: "Fehler des Impulsvektors, Median (Mittel), %",

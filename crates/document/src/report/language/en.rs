@@ -344,9 +344,9 @@ pub(super) const WORDS: Words = Words {
     validation_text: "These numbers are not of this case: they say how the models did where the truth was \
         known. The data are simulations, not measurements; no real collision was tried. Source: \
         docs/VALIDATION.md of the program, with the command of each table.",
-    validation_other_networks: "Answered by other networks than the default ones: {list}. What stands here and under \
-        the limits of the method says what the default ones, which are shipped, learned from and how they did. Of these networks it \
-        says nothing: `impactlab evaluate` measures them.",
+    other_networks: "Answered by other networks than the default ones: {list}. Limits of the method and validation in \
+        this report are of the default ones, which come with the program: what they learned from and how they did. \
+        Of these networks they say nothing: `impactlab evaluate` measures them.",
     validation_impact: "Against finite-element runs that close at 0.8 to 5.0 m/s; at higher closing speeds \
         restitution is smaller.",
     table_impact: "Error of the impulse vector, median (mean), %",

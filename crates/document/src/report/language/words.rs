@@ -230,7 +230,7 @@ pub(in crate::report) struct Words {
     pub method_sheet_text: &'static str,
     pub limits_sheet: &'static str,
     pub validation_text: &'static str,
-    pub validation_other_networks: &'static str,
+    pub other_networks: &'static str,
     pub validation_impact: &'static str,
     pub table_impact: &'static str,
     pub validation_four_dof: &'static str,

@@ -29,9 +29,6 @@ const FORCE: [Term; 4] = [Term::ImpulseSize, Term::PeakForce, Term::ContactDurat
 /// Facts of a forecast that the opinion has in other places.
 const ELSEWHERE: [Term; 1] = [Term::HingesOn];
 
-/// Share of draws at rest from which on the upper ends of 90 % intervals are ends.
-const ENOUGH_AT_REST: f64 = 0.95;
-
 /// A forecast of the motion.
 pub(in crate::report) fn opinion_of_forecast(
     report: &PredictMotionReport,
@@ -52,7 +49,7 @@ pub(in crate::report) fn opinion_of_forecast(
             let distance = format.drawn_in_words(Quantity::Length, &rest.distance_m);
             let values = [("share", &*share), ("limit", &*limit), ("distance", &*distance)];
             sentences.push(fill(words.comes_to_rest, &values));
-            if rest.share_at_rest < ENOUGH_AT_REST {
+            if !rest.is_nearly_all_at_rest() {
                 sentences.push(words.lower_bounds.to_owned());
             }
         }

@@ -32,6 +32,11 @@ impl ModelChoice {
         Self::Source(ModelSource::File(path.into()))
     }
 
+    /// Whether an answer that names its network so is one of the default network, which alone was measured.
+    pub fn is_default(name: &str) -> bool {
+        name == Self::default().to_string()
+    }
+
     /// The file that it stands in, if it is one of the user.
     pub fn path(&self) -> Option<&Path> {
         match self {

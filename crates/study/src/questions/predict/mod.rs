@@ -2,6 +2,7 @@
 
 pub(crate) mod both_vehicles;
 pub(crate) mod force;
+pub(crate) mod force_source;
 pub(crate) mod implied_contact;
 pub(crate) mod impulse_rival;
 pub(crate) mod motion;

@@ -19,9 +19,9 @@ use crate::questions::predict::both_vehicles::{Both, with_contact_law};
 use crate::questions::predict::recorded_impulse::RecordedImpulse;
 use crate::questions::simulate::dataset::take_case;
 use crate::{
-    Answer, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, ImpulseRival, Library,
-    ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer, SimulateRequest,
-    StudyError,
+    Answer, DEFAULT_DURATION_S, FlagReport, ForceSource, ImpliedContactReport, ImpulseRival,
+    Library, ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer,
+    SimulateRequest, StudyError,
 };
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
@@ -66,31 +66,6 @@ pub struct PredictMotionRequest {
 
 fn default_draws() -> usize {
     DEFAULT_DRAWS
-}
-
-/// Which force drives a motion.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ForceSource {
-    /// What a force network says of the collision.
-    Predicted(ModelChoice),
-    /// That of the motion's own source: a record, or the pulse of a scenario.
-    Given,
-    /// A file.
-    File(PathBuf),
-}
-
-impl ForceSource {
-    /// The force where nobody says which: what was recorded, and of a scenario, of which nothing was, what
-    /// the shipped network says.
-    pub fn usual(source: &MotionSource) -> Self {
-        match source {
-            MotionSource::Scenario { .. } => Self::Predicted(ModelChoice::default()),
-            MotionSource::Case { .. }
-            | MotionSource::Trajectory { .. }
-            | MotionSource::Drive(_) => Self::Given,
-        }
-    }
 }
 
 /// Where the struck vehicle goes, SI units.

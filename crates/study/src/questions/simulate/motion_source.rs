@@ -10,7 +10,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{PulseSetup, scale_of_car};
+use crate::analysis::{Analysis, PulseSetup, scale_of_car};
 use crate::ask::checks::{check, check_contact};
 use crate::{Drive, Library, ScenarioChoice, SeriesFile, StudyError, word};
 use impactlab_core::data::{Case, Channel, FileKind, ForceAttributes, ForceHistory, Loaded};
@@ -250,4 +250,17 @@ pub(crate) fn pulse_assumptions(pulse: &PulseSetup, height_m: f64) -> Vec<Caveat
     let is_usual = (pulse.shape, pulse.duration_s) == (usual.shape, usual.duration_s);
     let assumed = [is_usual.then(shape), pulse.is_height_open().then(height)];
     assumed.into_iter().flatten().collect()
+}
+
+/// Refuses a force that acts at a point far off the struck vehicle.
+pub(super) fn refuse_contact_off_vehicle(analysis: &Analysis) -> Result<(), StudyError> {
+    let Some(struck) = &analysis.struck else { return Ok(()) };
+    let ContactPoint { x_body_m, y_body_m, .. } = struck.contact;
+    analysis.footprint.check_contact([x_body_m, y_body_m]).map_err(|source| {
+        StudyError::ContactOffVehicle {
+            name: analysis.name.clone(),
+            vehicle: struck.vehicle.name.clone(),
+            source,
+        }
+    })
 }

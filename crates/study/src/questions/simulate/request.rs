@@ -21,8 +21,8 @@ use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::recorded_pair::load_pair;
 use crate::questions::simulate::dataset::take_case;
 use crate::questions::simulate::motion_source::{
-    acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
-    trajectory,
+    acting_force, contact_height_assumption, pulse_assumptions, recorded_force,
+    refuse_contact_off_vehicle, start_of_record, trajectory,
 };
 use crate::questions::simulate::vehicle_uncertainty::{VehicleUncertainty, vehicle_uncertainty};
 use crate::{
@@ -39,8 +39,8 @@ use impactlab_core::ranges::{
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::vehicle::{
-    ContactPoint, Ending, Equations, FrictionZone, Integrator, ROAD_FRICTION_SPREAD, RoadDraws,
-    RoadSlope, VehicleParameters,
+    Ending, Equations, FrictionZone, Integrator, ROAD_FRICTION_SPREAD, RoadDraws, RoadSlope,
+    VehicleParameters,
 };
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
@@ -489,17 +489,4 @@ fn analyse_drawn(
     let mut drawn = scenario.clone();
     drawn.struck.follow(median, &settings.struck);
     analyse_scenario(&drawn, pulse, settings)
-}
-
-/// Refuses a force that acts at a point far off the struck vehicle.
-fn refuse_contact_off_vehicle(analysis: &Analysis) -> Result<(), StudyError> {
-    let Some(struck) = &analysis.struck else { return Ok(()) };
-    let ContactPoint { x_body_m, y_body_m, .. } = struck.contact;
-    analysis.footprint.check_contact([x_body_m, y_body_m]).map_err(|source| {
-        StudyError::ContactOffVehicle {
-            name: analysis.name.clone(),
-            vehicle: struck.vehicle.name.clone(),
-            source,
-        }
-    })
 }
