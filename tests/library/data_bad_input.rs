@@ -182,6 +182,8 @@ fn what_is_no_file_is_refused() {
         "d.csv: is neither a data set (a folder with cases.csv and forces/ or trajectories/), nor \
          a folder of data sets, nor a force, trajectory or steer file"
     );
+    let error = Dataset::load(&here.join("none"), &mut go_on).unwrap_err();
+    assert_eq!(message(here, &error), "none: does not exist; check the name");
 }
 
 #[test]

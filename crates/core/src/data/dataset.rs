@@ -141,8 +141,8 @@ impl Dataset {
     ///   result is [`Outcome::Cancelled`].
     ///
     /// # Errors
-    /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`,
-    /// [`DataError::TooLarge`] if the files of the cases have more than [`MAX_DATASET_BYTES`]
+    /// [`DataError::NotFound`] if there is no such folder, [`DataError::NotRecognised`] if it has neither `forces/`
+    /// nor `trajectories/`, [`DataError::TooLarge`] if the files of the cases have more than [`MAX_DATASET_BYTES`]
     /// together, and any other [`DataError`] if `cases.csv` cannot be read, has no column `case` or
     /// too many cases, or if the folder of the files cannot be listed.
     pub fn load(
@@ -163,8 +163,10 @@ impl Dataset {
         budget: &mut u64,
         report: &mut ProgressCallback<'_>,
     ) -> Result<Outcome<Self>, DataError> {
-        let kind = DatasetKind::from_folder(root)
-            .ok_or_else(|| DataError::NotRecognised { path: root.to_owned() })?;
+        let kind = DatasetKind::from_folder(root).ok_or_else(|| match root.metadata() {
+            Ok(_) => DataError::NotRecognised { path: root.to_owned() },
+            Err(error) => DataError::io(root, error),
+        })?;
         let table = Table::read_cases(&root.join(CASES_FILE))?;
         check_size(&table)?;
         let mut problems = missing_attributes(&table, kind);

@@ -661,6 +661,9 @@ fn in_brackets(sentences: &[String]) -> String {
 }
 
 fn list(names: &[String]) -> String {
+    if names.is_empty() {
+        return "nothing".to_owned();
+    }
     let mut text: Vec<String> = names.iter().take(LISTED).map(|name| quoted(name)).collect();
     if names.len() > LISTED {
         text.push(format!("{} more", names.len() - LISTED));

@@ -19,11 +19,18 @@ const JUMP_M_S2: f64 = 981.0;
 /// Change of velocity from which a record that ends in zeros was filled up with them, m/s.
 const FILLED_UP_M_S: f64 = 2.0;
 
+/// Largest change of velocity that a record begins with when the recorder wakes up, m/s.
+const FIRST_M_S: f64 = 2.0;
+
+/// How much of its largest value a record of one impact holds at its end.
+const HELD_SHARE: f64 = 0.5;
+
 /// Rate at which a car that drives on its tires changes its speed at most, m/s²: that of dry friction and some.
 const TIRES_M_S2: f64 = 12.0;
 
-/// Least time that several rows before a crash cover, s: recorders keep one to ten a second.
-const SHORTEST_S: f64 = 0.1;
+/// Times that several rows before a crash cover at least and at most, s: recorders keep one to ten a second, for 5
+/// to 20 s.
+const COVERED_S: [f64; 2] = [0.1, 60.0];
 
 /// Rounding of a recorded speed, m/s: 1 mph and its halves.
 const ROUNDING_M_S: f64 = 0.6;
@@ -67,6 +74,7 @@ impl RecorderRecord {
                 ));
                 continue;
             }
+            doubts.extend(falls_back(&pairs, name));
             if recorded.is_cut {
                 doubts.push(format!(
                     "the change of velocity {name} still changes at the end of its record: the pulse is cut \
@@ -129,7 +137,7 @@ impl RecorderRecord {
             doubts.push("the times before the crash do not increase; none is taken".to_owned());
             return;
         }
-        doubts.extend(too_short(&time_s));
+        doubts.extend(wrong_span(&time_s));
         match beyond_tires(&time_s, &speed_m_s) {
             Some(why) => doubts.push(why),
             None => {
@@ -199,10 +207,11 @@ fn rows_before(
     rows
 }
 
-/// That rows before a crash follow each other faster than any recorder keeps them.
-fn too_short(time_s: &[f64]) -> Option<String> {
+/// That rows before a crash follow each other faster than any recorder keeps them, or for longer.
+fn wrong_span(time_s: &[f64]) -> Option<String> {
     let covered_s = time_s.last()? - time_s.first()?;
-    (covered_s > 0.0 && covered_s < SHORTEST_S).then(|| {
+    let [shortest_s, longest_s] = COVERED_S;
+    (covered_s > 0.0 && !(shortest_s..=longest_s).contains(&covered_s)).then(|| {
         format!(
             "the {} rows before the crash cover {covered_s:.3} s in all: check the unit of their times",
             time_s.len()
@@ -244,7 +253,14 @@ impl Table563<'_> {
                         quantity_name(quantity)
                     ));
                 }
-                Ok(None) | Err(_) => {}
+                Ok(None) => {}
+                Err(unit) => doubts.push(format!(
+                    "column {} {} is in {}, which is no unit of {}; it is left out",
+                    idx + 1,
+                    quoted(name),
+                    quoted(&unit),
+                    quantity_name(quantity)
+                )),
             }
         }
         None
@@ -254,16 +270,32 @@ impl Table563<'_> {
 /// Times and changes of velocity of a record after the recorder has woken up.
 fn delta_v_pairs(time_s: &[Option<f64>], values: &[Option<f64>]) -> Vec<(f64, f64)> {
     let pairs = time_s.iter().zip(values).filter_map(|(at_s, value)| at_s.zip(*value));
-    let is_in_range =
-        |(at_s, value): &(f64, f64)| (0.0..LONGEST_S).contains(at_s) && SPEED.contains(*value);
+    let is_in_range = |(at_s, value): &(f64, f64)| *at_s >= 0.0 && SPEED.contains(*value);
     pairs.filter(is_in_range).collect()
 }
 
-/// Why a record of the change of velocity is that of no crash, in words: it was filled up with zeros, or with a
-/// number that stands for none.
+/// Why a record of the change of velocity is that of no crash, in words: its times are not those of one, it does
+/// not begin with the impact, or it was filled up with zeros or a number that stands for none.
 fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
-    let (at_s, largest) = *pairs.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    let (first_s, first) = *pairs.first()?;
+    let (at_s, largest) = largest_of(pairs)?;
     let (end_s, last) = *pairs.last()?;
+    let mut steps = pairs.iter().zip(pairs.iter().skip(1));
+    if let Some(((t0, _), (t1, _))) = steps.find(|((t0, _), (t1, _))| t1 < t0) {
+        return Some(format!(
+            "goes back from {t0} to {t1} s: a table has one event, with times that increase"
+        ));
+    }
+    if end_s >= LONGEST_S {
+        return Some(format!(
+            "goes on up to {end_s} s, longer than any recorder keeps it: check the unit of the times"
+        ));
+    }
+    if first.abs() > FIRST_M_S + JUMP_M_S2 * first_s {
+        return Some(format!(
+            "is {first:.2} m/s at {first_s} s already, so that it does not begin with the impact"
+        ));
+    }
     if last == 0.0 && largest.abs() > FILLED_UP_M_S {
         return Some(format!(
             "is {largest:.2} m/s at {at_s} s and zero at its end, {end_s} s: remove the rows that fill it up"
@@ -277,6 +309,22 @@ fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
     Some(format!(
         "goes from {v0:.2} to {v1:.2} m/s between {t0} and {t1} s, as in no crash: remove the rows that have no value"
     ))
+}
+
+/// The value of a record that is largest in size, with its instant.
+fn largest_of(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
+    pairs.iter().copied().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+}
+
+/// That most of a change of velocity is gone at the end of its record, as after a second impact.
+fn falls_back(pairs: &[(f64, f64)], name: &str) -> Option<String> {
+    let ((at_s, largest), (end_s, last)) = (largest_of(pairs)?, *pairs.last()?);
+    (largest.abs() > FILLED_UP_M_S && last.abs() < HELD_SHARE * largest.abs()).then(|| {
+        format!(
+            "the change of velocity {name} is {largest:.2} m/s at {at_s} s and {last:.2} m/s at its end, {end_s} s, \
+             which is read: if it is of more than one impact, cut the record off after the first"
+        )
+    })
 }
 
 /// Why the speed before a crash is not that of the car, in words: it changes by more than tires can make it.

@@ -100,15 +100,42 @@ fn a_record_of_a_few_milliseconds_is_no_whole_pulse() {
     assert!(before.before.time_s.iter().all(|at_s| at_s.to_bits() != (-0.0_f64).to_bits()));
 }
 
-/// Seconds under a heading of milliseconds.
+/// Seconds under a heading of milliseconds, and the other way round.
 #[test]
-fn seconds_before_a_crash_that_cover_milliseconds_are_said() {
-    let is_said = |unit: &str| {
-        let text = format!("Time [{unit}],Speed [mph]\n-5,45\n-2.5,45\n0,45\n");
+fn times_before_a_crash_in_another_unit_are_said() {
+    let is_said = |unit: &str, factor: i32| {
+        let (first, second) = (-5 * factor, -2 * factor);
+        let text = format!("Time [{unit}],Speed [mph]\n{first},45\n{second},45\n0,45\n");
         let record = read(&text, None).unwrap();
-        record.doubts.iter().any(|doubt| doubt.contains("cover 0.005 s"))
+        record.doubts.iter().any(|doubt| doubt.contains("unit of their times"))
     };
-    assert!(is_said("ms") && !is_said("s"));
+    assert!(is_said("ms", 1) && is_said("s", 1000));
+    assert!(!is_said("s", 1) && !is_said("ms", 1000));
+}
+
+/// A wrong unit of time or of the change itself, two events, and a record that begins within the impact.
+#[test]
+fn a_change_of_velocity_that_is_none_of_one_crash_is_refused() {
+    for (unit, rows, word) in [
+        ("[s],Delta-V Longitudinal [mph]", "0,0\n1,-0.5\n80,-20\n120,-20\n", "unit of the times"),
+        ("[ms],Delta-V Longitudinal [mph]", "0,0\n100,-9\n0,0\n130,-3\n", "one event"),
+        ("[ms],Delta-V Longitudinal [mph]", "100,-9\n50,-5\n0,0\n", "one event"),
+        ("[ms],Delta-V Longitudinal [mph]", "0,-20\n40,-8\n120,-0.5\n", "begin with the impact"),
+        ("[ms],Delta-V Longitudinal [kN]", "0,0\n100,-9\n130,-9\n", "no unit of speed"),
+    ] {
+        let error = read(&format!("Time {unit}\n{rows}"), None).unwrap_err().to_string();
+        assert!(error.contains(word) && error.contains("edr.csv"), "{rows}: {error}");
+    }
+}
+
+#[test]
+fn a_change_of_velocity_that_goes_back_is_said() {
+    let is_said = |last: &str| {
+        let text = format!("Time [s],Delta-V Longitudinal [mph]\n0,0\n0.06,-20\n0.2,{last}\n");
+        let record = read(&text, None).unwrap();
+        record.doubts.iter().any(|doubt| doubt.contains("more than one impact"))
+    };
+    assert!(is_said("-0.5") && !is_said("-19"));
 }
 
 /// Zeros after the end of a record, and the 127 km/h that stand for no value.

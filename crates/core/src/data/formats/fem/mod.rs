@@ -7,6 +7,7 @@
 mod binout;
 mod choice;
 mod deck;
+mod fortran;
 mod legend;
 mod lsda;
 mod matsum;

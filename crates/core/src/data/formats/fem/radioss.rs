@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use crate::data::budget::MAX_TABLE_BYTES;
 use crate::data::formats::fem::deck::{DeckUnits, Dimension};
-use crate::data::formats::fem::legend::plain_title;
+use crate::data::formats::fem::fortran::{Record, Records, Wrong, float, word};
 use crate::data::formats::fem::momenta::{Momenta, PartMomentum};
 use crate::data::formats::fem::results::{FORCE, History, Kind, NODE, Results, columns};
 use crate::data::formats::fem::states::{cut_state, written_again};
@@ -49,84 +49,6 @@ pub(super) fn is_history(head: &[u8]) -> bool {
     number(0) == Some(TITLE_BYTES)
         && number(88) == Some(TITLE_BYTES)
         && number(4).is_some_and(|code| (3000..10_000).contains(&code))
-}
-
-/// The records of a file, and where the next one begins.
-struct Records<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-/// What is wrong, and at which byte.
-type Wrong = (usize, String);
-
-impl<'a> Records<'a> {
-    /// The next record; `None` at the end, also within a record.
-    fn next(&mut self) -> Result<Option<&'a [u8]>, Wrong> {
-        let at = self.at;
-        let mark = |at| word(self.bytes, at).map(i32::from_be_bytes);
-        let Some(length) = mark(at) else { return Ok(None) };
-        let length = usize::try_from(length);
-        let length =
-            length.map_err(|error| (at, format!("a record of a length that is none: {error}")))?;
-        let end = at.saturating_add(4).saturating_add(length);
-        let (Some(record), Some(after)) = (self.bytes.get(at + 4..end), mark(end)) else {
-            return Ok(None);
-        };
-        if usize::try_from(after) != Ok(length) {
-            return Err((
-                at,
-                format!("a record of {length} bytes at its start and {after} at its end"),
-            ));
-        }
-        self.at = end + 4;
-        Ok(Some(record))
-    }
-
-    /// The next record, of which something is said in front of the states.
-    fn needed(&mut self, what: &str) -> Result<Record<'a>, Wrong> {
-        let at = self.at;
-        let bytes = self.next()?.ok_or_else(|| (at, format!("the file ends before {what}")))?;
-        Ok(Record { bytes, at })
-    }
-}
-
-/// A record with its place.
-#[derive(Clone, Copy)]
-struct Record<'a> {
-    bytes: &'a [u8],
-    at: usize,
-}
-
-impl Record<'_> {
-    fn integer(&self, idx: usize) -> Result<i32, Wrong> {
-        self.integer_at(4 * idx)
-    }
-
-    fn integer_at(&self, from: usize) -> Result<i32, Wrong> {
-        let n = self.bytes.len();
-        let number = word(self.bytes, from).map(i32::from_be_bytes);
-        number.ok_or_else(|| (self.at, format!("a record of {n} bytes only")))
-    }
-
-    /// A number of things.
-    fn count(&self, idx: usize) -> Result<usize, Wrong> {
-        self.count_at(4 * idx)
-    }
-
-    fn count_at(&self, from: usize) -> Result<usize, Wrong> {
-        let number = self.integer_at(from)?;
-        usize::try_from(number).map_err(|error| (self.at, format!("a number of {number}: {error}")))
-    }
-
-    fn codes(&self) -> Vec<i32> {
-        words(self.bytes).map(i32::from_be_bytes).collect()
-    }
-
-    fn title(&self, from: usize, length: usize) -> String {
-        let bytes = self.bytes.get(from..from + length).unwrap_or_default();
-        plain_title(&encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes).0)
-    }
 }
 
 /// Something whose numbers are read: which record of a state holds them, and where in it.
@@ -491,20 +413,6 @@ fn read_of(group_type: i32) -> Option<Read> {
         104 => (Kind::Section, "section", true, BOTH),
         _ => return None,
     })
-}
-
-fn float(record: &[u8], at: usize) -> f64 {
-    let bytes = word(record, at.saturating_mul(4));
-    bytes.map_or(f64::NAN, |bytes| f64::from(f32::from_be_bytes(bytes)))
-}
-
-/// The four bytes from a place on.
-fn word(bytes: &[u8], at: usize) -> Option<[u8; 4]> {
-    bytes.get(at..at.checked_add(4)?)?.try_into().ok()
-}
-
-fn words(bytes: &[u8]) -> impl Iterator<Item = [u8; 4]> + '_ {
-    (0..bytes.len() / 4).filter_map(|idx| word(bytes, 4 * idx))
 }
 
 /// The factors of mass, length and time.
