@@ -69,7 +69,8 @@ fn force_prediction(bencher: Bencher<'_, '_>, is_open: bool) {
     let model = ForceModel::load(&path).expect("the shipped model");
     let mut scenario = model.training_cases().first().expect("a case").scenario.clone();
     if is_open {
-        scenario = ForceScenario { contact_m: None, striking_body: None, ..scenario };
+        scenario =
+            ForceScenario { contact_m: None, striking_body: None, struck_body: None, ..scenario };
     }
     bencher.bench(|| {
         let prediction = model.predict(&scenario).expect("a scenario in range");

@@ -50,6 +50,7 @@ fn manoeuvre(rng: &mut impl rand::Rng) -> ForceScenario {
         normal_rad: None,
         striking_position_m: Some([contact[0] - arm[0], contact[1] - arm[1]]),
         striking_body: None,
+        struck_body: None,
         yaw_inertia_kg_m2: mass_kg.map(|mass| Some(1.8 * mass)),
         contact_law: None,
     }

@@ -45,6 +45,7 @@ impl JudgedCase {
                 contact_m: None,
                 striking_position_m: None,
                 striking_body: None,
+                struck_body: None,
                 ..case.scenario.clone()
             },
         };

@@ -19,6 +19,8 @@ pub struct Row {
     /// Whether contact point, position and body of the bullet are withheld from the prediction,
     /// which then knows only θ: masses, velocities and heading of the bullet.
     pub is_theta_alone: bool,
+    /// Whether the body of the struck vehicle is withheld from the training.
+    pub is_struck_body_withheld: bool,
 }
 
 /// The rows of some names in the order of the table; all of them without names.
@@ -33,7 +35,13 @@ pub fn chosen(config: &ForceConfig, names: &[String]) -> Answer<Vec<Row>> {
 }
 
 fn all(config: &ForceConfig) -> Vec<Row> {
-    let row = |name, label, config| Row { name, label, config, is_theta_alone: false };
+    let row = |name, label, config| Row {
+        name,
+        label,
+        config,
+        is_theta_alone: false,
+        is_struck_body_withheld: false,
+    };
     let network = |name, label, change: fn(&mut NetworkConfig)| {
         let mut config = config.clone();
         change(&mut config.network);
@@ -49,9 +57,14 @@ fn all(config: &ForceConfig) -> Vec<Row> {
         ..config.clone()
     };
     let theta = Row { is_theta_alone: true, ..row("theta", "the same, θ alone", config.clone()) };
+    let one_struck_body = Row {
+        is_struck_body_withheld: true,
+        ..row("one-struck-body", "one kind of struck body", config.clone())
+    };
     vec![
         row(SHIPPED, "as shipped, all columns", config.clone()),
         theta,
+        one_struck_body,
         row(PHYSICS, "physics and its residuals alone, network untrained", untrained),
         network("no-attention", "without attention", |of| of.attention = false),
         network("no-factors", "independent instants (no latent factors)", |of| of.factors = 0),

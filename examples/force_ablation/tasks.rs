@@ -1,5 +1,6 @@
 //! The tasks: from which cases a network learns and by which it is judged.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -160,13 +161,26 @@ impl Task {
         format!("{} cases, seed {}, fold {}", self.n_train(), self.seed, self.fold + 1)
     }
 
+    /// The cases that a row learns from, as it knows them.
+    fn set(&self, row: &Row) -> Cow<'_, ForceTrainingSet> {
+        if !row.is_struck_body_withheld {
+            return Cow::Borrowed(&self.set);
+        }
+        let mut set = self.set.clone();
+        for case in &mut set.train {
+            case.scenario.struck_body = None;
+        }
+        Cow::Owned(set)
+    }
+
     fn settings(&self, row: &Row) -> ForceTrainSettings {
         TrainSettings::unsaved(row.config.clone(), self.seed)
     }
 
     /// SHA-256 of all that the row depends on but the build.
     pub fn identity(&self, row: &Row) -> String {
-        let settings = json!([row.config, row.is_theta_alone, self.seed, N_DRAWS]).to_string();
+        let known = [row.is_theta_alone, row.is_struck_body_withheld];
+        let settings = json!([row.config, known, self.seed, N_DRAWS]).to_string();
         let tests = sha256_hex(self.test.iter().map(|case| case.digest.as_bytes()));
         sha256_hex([settings.as_bytes(), self.set.digest().as_bytes(), tests.as_bytes()])
     }
@@ -175,16 +189,20 @@ impl Task {
     /// rows of one network that follow each other its training.
     pub fn run(&self, rows: &[Row], store: &Mutex<Store>) -> Answer<()> {
         let mut fitted: Vec<(String, Physics)> = Vec::new();
-        let mut latest: Option<(&ForceConfig, ForceModel)> = None;
+        let mut latest: Option<(&Row, ForceModel)> = None;
         for row in rows {
             let identity = self.identity(row);
             if held(store).find(&identity).is_some() {
                 continue;
             }
             let started = Instant::now();
-            let (_, model) = match latest.take().filter(|(config, _)| **config == row.config) {
+            let is_same = |other: &Row| {
+                other.config == row.config
+                    && other.is_struck_body_withheld == row.is_struck_body_withheld
+            };
+            let (_, model) = match latest.take().filter(|(other, _)| is_same(other)) {
                 Some(known) => latest.insert(known),
-                None => latest.insert((&row.config, self.trained(row, &mut fitted, store)?)),
+                None => latest.insert((row, self.trained(row, &mut fitted, store)?)),
             };
             let judge = |(stream, case): (usize, &ForceCase)| {
                 JudgedCase::new(model, case, row.is_theta_alone, stream as u64)
@@ -224,12 +242,13 @@ impl Task {
             }
         };
         let go_on = &mut |_: &TrainingReport| ControlFlow::Continue(());
-        train_around(physics, &self.set, &self.settings(row), go_on).map_err(told)
+        train_around(physics, &self.set(row), &self.settings(row), go_on).map_err(told)
     }
 
     fn physics_identity(&self, row: &Row) -> String {
         let (network, crush) = (&row.config.network, row.config.crush);
-        let settings = json!([network.centre, crush, self.seed]).to_string();
+        let withheld = row.is_struck_body_withheld;
+        let settings = json!([network.centre, crush, withheld, self.seed]).to_string();
         sha256_hex([settings.as_bytes(), self.set.digest().as_bytes()])
     }
 
@@ -240,7 +259,7 @@ impl Task {
             return Ok(physics);
         }
         let mut told_of = String::new();
-        let physics = fit_physics(&self.set, &self.settings(row), &mut |report| {
+        let physics = fit_physics(&self.set(row), &self.settings(row), &mut |report| {
             if let TrainingReport::Fit(fit) = report
                 && fit.what != told_of
             {

@@ -96,6 +96,7 @@ fn random_scenario(rng: &mut ChaCha8Rng) -> ForceScenario {
         normal_rad: Some(normal_rad),
         striking_position_m: Some([contact_m[0] - 2.0 * cos, contact_m[1] - 2.0 * sin]),
         striking_body: None,
+        struck_body: None,
         yaw_inertia_kg_m2: mass_kg.map(|mass_kg| Some(1.8 * mass_kg)),
         contact_law: None,
     }

@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 use candle_core::Tensor;
 use impactlab_core::data::Existing;
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::Caveat;
 use impactlab_networks::force::{
     Centre, ForceCase, ForceConfig, ForceModel, ForcePrediction, ForceScenario, ForceTrainSettings,
     ForceTrainingSet, fit_physics, train,
@@ -267,7 +268,12 @@ fn what_is_left_open_widens_the_bands() {
     let spread = |open: bool| -> f64 {
         let ask = |case: &ForceCase| {
             let known = case.scenario.clone();
-            let left_open = ForceScenario { contact_m: None, striking_body: None, ..known.clone() };
+            let left_open = ForceScenario {
+                contact_m: None,
+                striking_body: None,
+                struck_body: None,
+                ..known.clone()
+            };
             let prediction = model().predict(if open { &left_open } else { &known }).unwrap();
             assert_eq!([prediction.is_contact_open, prediction.is_body_open], [open, open]);
             prediction.mixture.std().fy_n.iter().sum::<f64>()
@@ -286,6 +292,39 @@ fn the_force_vanishes_after_the_contact() {
     let peak = mean.peak().0;
     assert!(mean.fy_n[249].abs() < 0.05 * peak, "{} of {peak}", mean.fy_n[249]);
     assert!(std.fy_n.iter().all(|std| *std > 0.0));
+}
+
+/// The struck cars of every second case are called vans, and pushed back with half as much again.
+#[test]
+fn the_body_of_the_struck_vehicle_is_learned_and_may_be_open() {
+    let mut set = set().clone();
+    for (i, case) in set.train.iter_mut().enumerate() {
+        let (name, factor) = if i % 2 == 0 { ("saloon", 1.0) } else { ("van", 1.5) };
+        case.scenario.struck_body = Some(name.to_owned());
+        let curve = &mut case.curve;
+        curve.fx_n.iter_mut().chain(&mut curve.fy_n).for_each(|force| *force *= factor);
+        case.impulse_n_s = case.impulse_n_s.map(|impulse| factor * impulse);
+        case.peak_n *= factor;
+    }
+    let mut settings = settings(None);
+    settings.config.crush.max_steps = 4;
+    let trained = train(&set, &settings, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(trained.struck_bodies(), ["saloon", "van"]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bodies.safetensors");
+    saved(&trained, &path);
+    let model = ForceModel::load(&path).unwrap();
+    let named = |name: Option<&str>| {
+        let struck_body = name.map(str::to_owned);
+        model.predict(&ForceScenario { struck_body, ..scenario() }).unwrap()
+    };
+    let [saloon, van, open, tank] = [Some("saloon"), Some("van"), None, Some("tank")].map(named);
+    let peak = |prediction: &ForcePrediction| prediction.centre.peak().0;
+    assert!(peak(&saloon) < peak(&open) && peak(&open) < peak(&van));
+    assert!(!van.is_struck_body_open && open.is_struck_body_open && tank.is_struck_body_open);
+    assert_eq!(tank.mixture, open.mixture);
+    let is_said = |caveat: &Caveat| caveat.text.contains("(saloon, van)");
+    assert!(tank.caveats.iter().any(is_said) && !open.caveats.iter().any(is_said));
 }
 
 #[test]

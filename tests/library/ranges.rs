@@ -294,9 +294,7 @@ fn scenarios_in_questions_are_checked() {
             }
             let scenario = ScenarioChoice::Inline(Box::new(scenario));
             let collision = ForceQuestion::Scenario(scenario);
-            let (model, seed) = (ModelChoice::default(), 0);
-            let (body, open_contact, samples) = (None, false, 0);
-            checked(&PredictForceRequest { collision, model, body, open_contact, samples, seed })
+            checked(&PredictForceRequest::new(collision))
         });
     }
 }
@@ -331,14 +329,8 @@ fn set(scenario: &mut Scenario, number: usize, value: f64) {
 fn collisions_in_numbers_are_checked() {
     let numbers = ForceScenario::from_scenario(&pit()).unwrap();
     let ask = |numbers: ForceScenario| {
-        checked(&PredictForceRequest {
-            collision: ForceQuestion::Numbers { name: String::new(), numbers: Box::new(numbers) },
-            model: ModelChoice::default(),
-            body: None,
-            open_contact: false,
-            samples: 0,
-            seed: 0,
-        })
+        let numbers = ForceQuestion::Numbers { name: String::new(), numbers: Box::new(numbers) };
+        checked(&PredictForceRequest::new(numbers))
     };
     probe("mass", &impactlab_core::ranges::BODY_MASS, |mass| {
         ask(ForceScenario { mass_kg: [mass, 2000.0], ..numbers.clone() })
@@ -368,14 +360,8 @@ fn numbers_of_things_in_questions_are_checked() {
         checked(&request)
     });
     probe("samples", &SAMPLES, |n| {
-        checked(&PredictForceRequest {
-            collision: ForceQuestion::Scenario(scenario()),
-            model: ModelChoice::default(),
-            body: None,
-            open_contact: false,
-            samples: count(n)?,
-            seed: 0,
-        })
+        let usual = PredictForceRequest::new(ForceQuestion::Scenario(scenario()));
+        checked(&PredictForceRequest { samples: count(n)?, ..usual })
     });
     let evaluation = EvaluateForceRequest::new(ModelChoice::default(), "datasets/fea");
     probe("folds", &FOLDS, |n| {

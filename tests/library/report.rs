@@ -279,14 +279,8 @@ fn what_the_shipped_networks_did_is_not_said_of_a_network_of_the_user() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models/force.safetensors");
     let report_of = |model: ModelChoice| {
         let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
-        let question = PredictForceRequest {
-            collision: ForceQuestion::Scenario(scenario),
-            model,
-            body: None,
-            open_contact: false,
-            samples: 0,
-            seed: 0,
-        };
+        let usual = PredictForceRequest::new(ForceQuestion::Scenario(scenario));
+        let question = PredictForceRequest { model, ..usual };
         let variant = Variant {
             name: "own".to_owned(),
             questions: vec![question.into()],

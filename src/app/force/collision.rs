@@ -30,6 +30,9 @@ pub fn collision_of(request: &PredictForceRequest, sources: &[Source]) -> Option
     if request.body.is_some() {
         numbers.striking_body.clone_from(&request.body);
     }
+    if request.struck_body.is_some() {
+        numbers.struck_body.clone_from(&request.struck_body);
+    }
     if request.open_contact {
         super::forget_contact(&mut numbers);
     }
@@ -41,6 +44,6 @@ impl NamedCollision {
     pub fn put_into(self, request: &mut PredictForceRequest) {
         let Self { name, numbers } = self;
         request.collision = ForceQuestion::Numbers { name, numbers: Box::new(numbers) };
-        (request.body, request.open_contact) = (None, false);
+        (request.body, request.struck_body, request.open_contact) = (None, None, false);
     }
 }

@@ -1,5 +1,5 @@
 //! The form with the collision whose force is predicted: masses, velocities, heading of the
-//! striking vehicle, struck side, contact point and body of the striking vehicle.
+//! striking vehicle, struck side, contact point and bodies of both vehicles.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -41,14 +41,19 @@ pub fn form_ui(
         return;
     };
     ui.spacing_mut().slider_width = SLIDER_WIDTH;
-    let bodies = force.model.current.as_ref().map(|current| current.model.bodies());
+    let model = force.model.current.as_ref().map(|current| &current.model);
+    let bodies = model.map(|model| [model.bodies(), model.struck_bodies()]).unwrap_or_default();
     let mut edited = collision.clone();
     Grid::new("force scenario").num_columns(2).show(ui, |ui| {
         let numbers = &mut edited.numbers;
         motion_ui(ui, numbers, view.units);
         side_ui(ui, numbers);
         contact_ui(ui, numbers, view.units);
-        body_ui(ui, numbers, &bodies.unwrap_or_default());
+        let [striking, struck] = &bodies;
+        body_ui(ui, "Striking body", &mut numbers.striking_body, striking);
+        if !struck.is_empty() {
+            body_ui(ui, "Struck body", &mut numbers.struck_body, struck);
+        }
     });
     if edited != collision {
         edited.put_into(&mut project.predict_force);
@@ -58,11 +63,12 @@ pub fn form_ui(
         let open = [
             (report.is_contact_open, "the contact point"),
             (report.is_body_open, "the striking vehicle's body"),
+            (report.is_struck_body_open, "the struck vehicle's body"),
         ];
         let open: Vec<&str> =
             open.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect();
         if !open.is_empty() {
-            ui.weak(format!("Averaged over {}, which is unknown.", open.join(" and ")));
+            ui.weak(format!("Averaged over what is unknown: {}.", open.join(" and ")));
         }
     }
 }
@@ -199,19 +205,18 @@ fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     ui.end_row();
 }
 
-/// Draws the choice of the body of the striking vehicle among those that the model was trained on,
-/// or unknown.
-fn body_ui(ui: &mut Ui, scenario: &mut ForceScenario, bodies: &[String]) {
-    let hint = "Shape of the striking vehicle's front, as the data set calls it";
-    let name = ui.label("Striking body").on_hover_text(hint);
+/// Draws the choice of the body of a vehicle among those that the model was trained on, or unknown.
+fn body_ui(ui: &mut Ui, title: &str, body: &mut Option<String>, bodies: &[String]) {
+    let hint = "Kind of the vehicle's body, as the data set calls it";
+    let name = ui.label(title).on_hover_text(hint);
     let label = |body: &Option<String>| body.clone().unwrap_or_else(|| "unknown".to_owned());
     let known = bodies.iter().filter(|body| !body.is_empty());
-    ComboBox::from_id_salt("striking body")
-        .selected_text(label(&scenario.striking_body))
+    ComboBox::from_id_salt(title)
+        .selected_text(label(body))
         .show_ui(ui, |ui| {
             for option in std::iter::once(None).chain(known.map(|body| Some(body.clone()))) {
                 let text = label(&option);
-                ui.selectable_value(&mut scenario.striking_body, option, text);
+                ui.selectable_value(body, option, text);
             }
         })
         .response

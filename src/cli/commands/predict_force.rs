@@ -34,6 +34,9 @@ pub(in crate::cli) struct PredictForceArgs {
     /// Kind of body of the striking vehicle, as the training data name it; left open if not given
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
+    /// The same of the struck vehicle
+    #[arg(long, value_name = "NAME")]
+    struck_body: Option<String>,
     /// Leave the contact point open: it is drawn from that of the training cases
     #[arg(long)]
     open_contact: bool,
@@ -83,6 +86,7 @@ pub(in crate::cli) fn run(
         collision: collision(args)?,
         model: args.model.clone().into(),
         body: args.body.clone(),
+        struck_body: args.struck_body.clone(),
         open_contact: args.open_contact,
         samples: args.samples,
         seed: args.seed,

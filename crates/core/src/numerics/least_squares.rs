@@ -23,6 +23,29 @@ const STEPS_PER_JACOBIAN: usize = 3;
 /// Relative decrease of the cost by a step from which another step with the same Jacobian is tried.
 const GOOD_GAIN: f64 = 0.02;
 
+/// Residuals r(x) whose squares are minimised. A function of the parameters is one.
+pub trait LeastSquaresProblem: Sync {
+    /// The residuals at given parameters, always of the same number; `None` if they have no value there,
+    /// so that no step leads there.
+    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>>;
+
+    /// The same where a single parameter has moved. Problems in which a parameter changes few of the
+    /// residuals compute only these.
+    ///
+    /// - `x`: with the parameter moved;
+    /// - `idx`: of that parameter;
+    /// - `before`: the residuals with the parameter where it was.
+    fn with_one_moved(&self, x: &[f64], _idx: usize, _before: &[f64]) -> Option<Vec<f64>> {
+        self.residuals(x)
+    }
+}
+
+impl<F: Fn(&[f64]) -> Option<Vec<f64>> + Sync> LeastSquaresProblem for F {
+    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
+        self(x)
+    }
+}
+
 /// The result of [`levenberg_marquardt`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeastSquares {
@@ -46,8 +69,7 @@ pub struct LeastSquares {
 ///
 /// Source: D. Marquardt, SIAM J. Appl. Math. 11 (1963) 431–441.
 ///
-/// - `residuals`: residuals r at given parameters, always of the same number; `None` if they have
-///   no value there, so that no step leads there.
+/// - `problem`: the residuals r.
 /// - `start`: parameters at which the search starts.
 /// - `scale`: expected change of each parameter, positive, in its own unit.
 /// - `max_steps`: largest number of Jacobians; each is followed by up to three steps.
@@ -55,16 +77,17 @@ pub struct LeastSquares {
 ///   parameters found so far.
 /// - returns `None` if the residuals have no value or no finite cost at the start.
 pub fn levenberg_marquardt(
-    residuals: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
+    problem: &impl LeastSquaresProblem,
     [start, scale]: [&[f64]; 2],
     max_steps: usize,
     report: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Option<LeastSquares> {
-    let at = |x: &[f64]| {
-        let r = DVector::from_vec(residuals(x)?);
+    let sized = |residuals: Vec<f64>| {
+        let r = DVector::from_vec(residuals);
         let cost = 0.5 * r.norm_squared();
         cost.is_finite().then_some((r, cost))
     };
+    let at = |x: &[f64]| sized(problem.residuals(x)?);
     let mut x = start.to_vec();
     let (mut r, mut cost) = at(&x)?;
     let (mut damping, mut n_steps) = (FIRST_DAMPING, 0);
@@ -74,7 +97,8 @@ pub fn levenberg_marquardt(
             .map(|j| {
                 let mut moved = x.clone();
                 moved[j] += DIFFERENCE * scale[j];
-                at(&moved).map_or_else(|| DVector::zeros(r.len()), |(s, _)| (s - &r) / DIFFERENCE)
+                let there = problem.with_one_moved(&moved, j, r.as_slice()).and_then(sized);
+                there.map_or_else(|| DVector::zeros(r.len()), |(s, _)| (s - &r) / DIFFERENCE)
             })
             .collect();
         let jacobian = DMatrix::from_columns(&columns);
@@ -113,10 +137,7 @@ pub fn levenberg_marquardt(
 mod tests {
     use super::*;
 
-    fn search(
-        residuals: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
-        start: &[f64],
-    ) -> LeastSquares {
+    fn search(residuals: &impl LeastSquaresProblem, start: &[f64]) -> LeastSquares {
         let scale = vec![1.0; start.len()];
         let go_on = &mut |_: f64| ControlFlow::Continue(());
         levenberg_marquardt(residuals, [start, &scale], 200, go_on).unwrap()
@@ -134,7 +155,7 @@ mod tests {
     fn a_start_without_value_is_none_and_breaking_stops() {
         let scale = [1.0];
         let go_on = &mut |_: f64| ControlFlow::Continue(());
-        assert!(levenberg_marquardt(&|_| None, [&[0.0], &scale], 5, go_on).is_none());
+        assert!(levenberg_marquardt(&|_: &[f64]| None, [&[0.0], &scale], 5, go_on).is_none());
         let stop = &mut |_: f64| ControlFlow::Break(());
         let residuals = |x: &[f64]| Some(vec![x[0] - 1.0]);
         let found = levenberg_marquardt(&residuals, [&[0.0], &scale], 5, stop).unwrap();

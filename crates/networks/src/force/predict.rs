@@ -4,7 +4,7 @@ use candle_core::DType;
 use rayon::prelude::*;
 
 use crate::force::network::{OutsideTraining, features};
-use crate::force::physics::{BareForce, CentreCurve};
+use crate::force::physics::{BareForce, Bodies, CentreCurve};
 use crate::force::train::{ForceModel, network_input};
 use crate::force::{ForceError, ForceScenario};
 use impactlab_core::uncertainty::{
@@ -55,13 +55,15 @@ pub struct ForcePrediction {
     /// Whether the striking vehicle's body was left open, or is none that the model knows, and was drawn
     /// from its distribution.
     pub is_body_open: bool,
+    /// The same of the struck vehicle's body.
+    pub is_struck_body_open: bool,
 }
 
 /// A scenario with contact point and kind of body.
 struct Variant {
     probability: f64,
     contact_m: [f64; 2],
-    body_idx: usize,
+    bodies: Bodies,
     /// Applicability of the network, 0 to 1.
     applicability: f64,
 }
@@ -109,7 +111,7 @@ impl ForceModel {
         };
         let outside = self.domain.outside(&canonical);
         let mut caveats = caveats(applicability, &outside, bare);
-        caveats.extend(self.caveat_of_body(&canonical));
+        caveats.extend(self.caveats_of_bodies(&canonical));
         let turned = |mixture: CurveMixture| if mirrored { mixture.mirrored() } else { mixture };
         let [px, py] = prediction.momentum_impulse_n_s;
         Ok(ForcePrediction {
@@ -124,6 +126,8 @@ impl ForceModel {
             caveats,
             is_contact_open: canonical.contact_m.is_none(),
             is_body_open: self.body_idx(&canonical).is_none() && self.bodies().len() > 1,
+            is_struck_body_open: self.struck_body_idx(&canonical).is_none()
+                && !self.struck_bodies().is_empty(),
         })
     }
 
@@ -156,9 +160,9 @@ impl ForceModel {
         canonical: &ForceScenario,
         variants: &[Variant],
     ) -> Result<CanonicalPrediction, ForceError> {
-        let n_bodies = self.bodies().len();
+        let n_bodies = [self.bodies().len(), self.struck_bodies().len()];
         let centre =
-            |variant: &Variant| self.centre.curve(canonical, variant.contact_m, variant.body_idx);
+            |variant: &Variant| self.centre.curve(canonical, variant.contact_m, variant.bodies);
         let centres: Vec<CentreCurve> =
             variants.par_iter().map(centre).collect::<Result<_, _>>()?;
         let row = |(centre, variant): (&CentreCurve, &Variant)| {
@@ -166,7 +170,7 @@ impl ForceModel {
                 canonical,
                 centre,
                 variant.contact_m,
-                variant.body_idx,
+                variant.bodies,
                 n_bodies,
             ))
         };
@@ -256,25 +260,43 @@ impl ForceModel {
         self.bodies().iter().position(|known| known == name)
     }
 
-    /// What is said of a body that the model does not know, if the bodies that it has learned from have
-    /// names.
-    fn caveat_of_body(&self, scenario: &ForceScenario) -> Option<Caveat> {
-        let name = scenario.striking_body.as_ref().filter(|_| self.body_idx(scenario).is_none())?;
-        let known: Vec<String> =
-            self.bodies().into_iter().filter(|name| !name.is_empty()).collect();
-        if known.is_empty() {
-            return None;
-        }
-        let known = known.join(", ");
-        let text = Phrase::new(
+    /// The same of the struck vehicle.
+    fn struck_body_idx(&self, scenario: &ForceScenario) -> Option<usize> {
+        let name = scenario.struck_body.as_ref()?;
+        self.struck_bodies().iter().position(|known| known == name)
+    }
+
+    /// What is said of bodies that the model does not know, if those that it has learned from have names.
+    fn caveats_of_bodies(&self, scenario: &ForceScenario) -> impl Iterator<Item = Caveat> {
+        let of_striking = Phrase::new(
             "the body of the striking vehicle, {0}, is none of those that the network knows \
              ({1}): it is left open",
             "Der Aufbau des stoßenden Fahrzeugs, {0}, gehört nicht zu denen, die das Netz kennt ({1}): \
              Er bleibt offen",
-        )
-        .with(PhraseValue::Name(format!("{name:?}")))
-        .with(PhraseValue::Name(known));
-        Some(Caveat::new(CaveatKind::OutsideDomain, text))
+        );
+        let of_struck = Phrase::new(
+            "the body of the struck vehicle, {0}, is none of those that the network knows ({1}): \
+             it is left open",
+            "Der Aufbau des gestoßenen Fahrzeugs, {0}, gehört nicht zu denen, die das Netz kennt ({1}): \
+             Er bleibt offen",
+        );
+        let striking =
+            scenario.striking_body.as_ref().filter(|_| self.body_idx(scenario).is_none());
+        let struck =
+            scenario.struck_body.as_ref().filter(|_| self.struck_body_idx(scenario).is_none());
+        let caveat = |name: Option<&String>, known: Vec<String>, text: Phrase| {
+            let known: Vec<String> = known.into_iter().filter(|name| !name.is_empty()).collect();
+            let name = name.filter(|_| !known.is_empty())?;
+            let text = text
+                .with(PhraseValue::Name(format!("{name:?}")))
+                .with(PhraseValue::Name(known.join(", ")));
+            Some(Caveat::new(CaveatKind::OutsideDomain, text))
+        };
+        let caveats = [
+            caveat(striking, self.bodies(), of_striking),
+            caveat(struck, self.struck_bodies(), of_struck),
+        ];
+        caveats.into_iter().flatten()
     }
 
     fn variants(&self, scenario: &ForceScenario) -> Vec<Variant> {
@@ -283,20 +305,36 @@ impl ForceModel {
             None if self.bodies().len() == 1 => vec![(0, 1.0)],
             None => self.open.body.iter().copied().enumerate().collect(),
         };
+        let struck: Vec<(Option<usize>, f64)> = match self.struck_body_idx(scenario) {
+            Some(idx) => vec![(Some(idx), 1.0)],
+            None if self.open.struck_body.is_empty() => vec![(None, 1.0)],
+            None => self
+                .open
+                .struck_body
+                .iter()
+                .enumerate()
+                .map(|(i, share)| (Some(i), *share))
+                .collect(),
+        };
         let contacts = match scenario.contact_m {
             Some(contact) => vec![contact],
             None => self.open.contact_m.clone(),
         };
         let share = 1.0 / contacts.len().max(1) as f64;
-        let pairs = bodies.iter().flat_map(|&(body_idx, probability)| {
+        let kinds = bodies.iter().flat_map(|&(striking, probability)| {
+            struck
+                .iter()
+                .map(move |&(struck, share)| (Bodies { striking, struck }, probability * share))
+        });
+        let variants = kinds.flat_map(|(bodies, probability)| {
             contacts.iter().map(move |&contact_m| Variant {
                 probability: probability * share,
                 contact_m,
-                body_idx,
+                bodies,
                 applicability: self.domain.applicability(scenario, contact_m),
             })
         });
-        pairs.filter(|variant| variant.probability > 0.0).collect()
+        variants.filter(|variant| variant.probability > 0.0).collect()
     }
 }
 

@@ -51,8 +51,11 @@ impl PredictForceReport {
                 facts.push(Fact::vector(Term::NetworkStart, Quantity::Impulse, start));
             }
         }
-        let open =
-            [(Term::ContactPoint, self.is_contact_open), (Term::StrikingBody, self.is_body_open)];
+        let open = [
+            (Term::ContactPoint, self.is_contact_open),
+            (Term::StrikingBody, self.is_body_open),
+            (Term::StruckBody, self.is_struck_body_open),
+        ];
         let drawn = |term| Fact::new(term, Value::Term(Term::DrawnFromTraining));
         facts.extend(open.into_iter().filter(|(_, is_open)| *is_open).map(|(term, _)| drawn(term)));
         facts

@@ -342,6 +342,7 @@ terms! {
         "With restitution and friction that were fitted to the training cases";
     ContactPoint: "contact point", "Kontaktpunkt";
     StrikingBody: "body of the striking vehicle", "Aufbau des stoßenden Fahrzeugs";
+    StruckBody: "body of the struck vehicle", "Aufbau des gestoßenen Fahrzeugs";
     DrawnFromTraining: "open, drawn from that of the training cases",
         "offen, aus dem der Trainingsfälle gezogen";
     ForceModes: "Possible courses of the contact", "Mögliche Verläufe des Kontakts",

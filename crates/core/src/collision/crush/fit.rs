@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
-use super::law::CrushLaw;
+use super::law::{Applies, CrushLaw};
 use super::simulate::CrushScenario;
-use crate::numerics::levenberg_marquardt;
+use crate::numerics::{LeastSquaresProblem, levenberg_marquardt};
 
 /// Number of consecutive time steps over which forces are averaged before they are compared. Faster
 /// variations of the force are vibrations of the structure, which the model does not represent.
@@ -76,20 +76,63 @@ impl CrushLaw {
             return None;
         }
         let (prior, scales) = (self.to_vector(), self.scales());
-        let residuals = |row: &[f64]| {
-            let law = self.with_vector(row);
-            let cases: Vec<Option<Vec<f64>>> =
-                references.par_iter().map(|reference| reference.residuals(&law)).collect();
-            let mut all = Vec::new();
-            for case in cases {
-                all.extend(case?);
-            }
-            let held = row.iter().zip(&prior).zip(&scales);
-            all.extend(held.map(|((p, p0), scale)| settings.prior_weight * (p - p0) / scale));
-            Some(all)
+        let problem = CrushProblem {
+            law: self,
+            references,
+            prior: &prior,
+            scales: &scales,
+            applies: self.applications(),
+            prior_weight: settings.prior_weight,
         };
-        let search = levenberg_marquardt(&residuals, [&prior, &scales], settings.max_steps, report);
+        let search = levenberg_marquardt(&problem, [&prior, &scales], settings.max_steps, report);
         Some(self.with_vector(&search?.parameters))
+    }
+}
+
+/// The samples and the prior as a problem of least squares: the residuals of each sample, then those of
+/// the parameters.
+struct CrushProblem<'a> {
+    law: &'a CrushLaw,
+    references: Vec<Reference<'a>>,
+    prior: &'a [f64],
+    scales: &'a [f64],
+    applies: Vec<Applies>,
+    prior_weight: f64,
+}
+
+impl CrushProblem<'_> {
+    /// How far the parameters lie from the prior.
+    fn of_prior<'a>(&'a self, row: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        let held = row.iter().zip(self.prior).zip(self.scales);
+        held.map(|((p, p0), scale)| self.prior_weight * (p - p0) / scale)
+    }
+}
+
+impl LeastSquaresProblem for CrushProblem<'_> {
+    fn residuals(&self, row: &[f64]) -> Option<Vec<f64>> {
+        let law = self.law.with_vector(row);
+        let cases: Vec<Option<Vec<f64>>> =
+            self.references.par_iter().map(|reference| reference.residuals(&law)).collect();
+        let mut all = Vec::new();
+        for case in cases {
+            all.extend(case?);
+        }
+        all.extend(self.of_prior(row));
+        Some(all)
+    }
+
+    fn with_one_moved(&self, row: &[f64], idx: usize, before: &[f64]) -> Option<Vec<f64>> {
+        let law = self.law.with_vector(row);
+        let applies = self.applies.get(idx)?;
+        let mut all = Vec::with_capacity(before.len());
+        for reference in &self.references {
+            match reference.has(*applies) {
+                true => all.extend(reference.residuals(&law)?),
+                false => all.extend(before.iter().skip(all.len()).take(reference.n_residuals())),
+            }
+        }
+        all.extend(self.of_prior(row));
+        Some(all)
     }
 }
 
@@ -116,6 +159,20 @@ impl<'a> Reference<'a> {
         let impulse_scale = impulse[0].hypot(impulse[1]).max(LEAST_NET_SHARE * total);
         let is_usable = norm > 0.0 && norm.is_finite();
         is_usable.then_some(Self { sample, settings, means, norm, impulse, impulse_scale })
+    }
+
+    /// Whether parameters that apply to some collisions apply to this one.
+    fn has(&self, applies: Applies) -> bool {
+        let scenario = &self.sample.scenario;
+        match applies {
+            Applies::All => true,
+            Applies::Striking(idx) => scenario.body_idx == idx,
+            Applies::Struck(idx) => scenario.struck_body_idx == Some(idx),
+        }
+    }
+
+    fn n_residuals(&self) -> usize {
+        self.means.iter().map(|means| means.len() + 1).sum()
     }
 
     fn residuals(&self, law: &CrushLaw) -> Option<Vec<f64>> {
@@ -196,6 +253,34 @@ mod tests {
         let impulse = |law: &CrushLaw| sample(law, unseen.clone()).fy_n.iter().sum::<f64>();
         let (got, known) = (impulse(&fitted), impulse(&truth));
         assert!((got / known - 1.0).abs() < 0.02, "{got} {known}, prior {}", impulse(&prior));
+    }
+
+    /// Parameters of a body are not tried on collisions of the others.
+    #[test]
+    fn one_moved_parameter_gives_the_residuals_of_all_computed_anew() {
+        let law = law();
+        let scenarios = [None, Some(0), Some(1)]
+            .map(|struck_body_idx| CrushScenario { struck_body_idx, ..example() });
+        let samples = scenarios.map(|scenario| sample(&law, scenario));
+        let settings =
+            CrushFit { dt_s: 1e-3, prior_weight: 0.1, impulse_weight: 1.0, max_steps: 1 };
+        let references = samples.iter().filter_map(|sample| Reference::new(sample, settings));
+        let (prior, scales) = (law.to_vector(), law.scales());
+        let problem = CrushProblem {
+            law: &law,
+            references: references.collect(),
+            prior: &prior,
+            scales: &scales,
+            applies: law.applications(),
+            prior_weight: 0.1,
+        };
+        let before = problem.residuals(&prior).unwrap();
+        for idx in 0..prior.len() {
+            let mut moved = prior.clone();
+            moved[idx] += 0.1 * scales[idx];
+            let all = problem.residuals(&moved);
+            assert_eq!(problem.with_one_moved(&moved, idx, &before), all, "{idx}");
+        }
     }
 
     #[test]

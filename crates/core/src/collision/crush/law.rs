@@ -3,26 +3,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::knots::CrushKnots;
 use super::outline::{N_OUTLINE_FACTORS, Nose};
 
-/// Limits of the ranges of crush depth in which the stiffness of the outer skins is constant, m.
-/// The last range has no upper limit.
-pub(super) const DEPTH_KNOTS_M: [f64; 8] = [0.0, 0.03, 0.06, 0.09, 0.105, 0.13, 0.17, 0.24];
-/// Positions along the side of the struck vehicle, measured from its rear axle and positive
-/// forwards, m, at which the stiffness factor and the bulge of the skins are given. Values are
-/// linear in between and constant beyond the ends.
-pub(super) const SKIN_KNOTS_M: [f64; 8] = [-0.66, -0.36, -0.16, 0.0, 0.16, 0.34, 0.64, 1.04];
-/// Positions along the side of the struck vehicle, measured from its rear axle and positive
-/// forwards, m, at which the depth of its stiff inner structure (wheel, edges of the wheel arch) is
-/// given. Values are linear in between and constant beyond the ends.
-pub(super) const STRUCK_STRUCTURE_KNOTS_M: [f64; 12] =
-    [-0.8, -0.6, -0.45, -0.32, -0.2, -0.1, 0.0, 0.1, 0.2, 0.32, 0.45, 0.6];
-/// Positions along the x axis of the striking vehicle, measured from the start of its front corner
-/// and positive forwards, m, at which the depth of its stiff inner structure (wheel behind the
-/// corner, beam in front of it) is given. Values are linear in between and constant beyond the
-/// ends.
-pub(super) const STRIKING_STRUCTURE_KNOTS_M: [f64; 10] =
-    [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
+/// Rear end of the struck vehicle relative to its rear axle, m, of laws that do not store it.
+const REAR_END_BEFORE_M: f64 = -0.96;
 
 /// Parameters of one kind of body of the striking vehicle, which modify those that all bodies share
 /// ([`CrushLaw`]).
@@ -34,7 +19,7 @@ pub struct BodyCrush {
     /// Outline of the front of the striking vehicle.
     pub nose: Nose,
     /// Logarithm of the factor on the stiffness of the skins in each range of crush depth.
-    pub depth_log_factor: [f64; DEPTH_KNOTS_M.len()],
+    pub depth_log_factor: Vec<f64>,
     /// Logarithm of the factor on the stiffness of the skins at marks along the outline of the
     /// striking vehicle: rear end of the side; start, middle and end of the corner; inner end of
     /// the front.
@@ -42,10 +27,30 @@ pub struct BodyCrush {
     /// Logarithm of the factor on the stiffness k₂ of the inner structures.
     pub structure_log_factor: f64,
     /// Amount that is added to the depth d_b of the inner structure of the striking vehicle, m.
-    pub structure_depth_m: [f64; STRIKING_STRUCTURE_KNOTS_M.len()],
+    pub structure_depth_m: Vec<f64>,
     /// Recovery q: ratio of the length over which the skins unload to the crush, at a crush of 0.1
     /// m.
     pub recovery: f64,
+    /// Amount that is added to the friction coefficient μ.
+    pub friction: f64,
+}
+
+/// Corrections of the shared parameters ([`CrushLaw`]) for one kind of body of the struck vehicle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StruckBodyCrush {
+    /// Name of the body in the data; empty for cases that do not name it.
+    pub name: String,
+    /// Logarithm of the factor on the stiffness of the skins in each range of crush depth.
+    pub depth_log_factor: Vec<f64>,
+    /// Amount that is added to the logarithm of the factor of the skins along the side.
+    pub skin_log_factor: Vec<f64>,
+    /// Amount that is added to the bulge b of the side, m.
+    pub skin_bulge_m: Vec<f64>,
+    /// Logarithm of the factor on the stiffness k₂ of the inner structures.
+    pub structure_log_factor: f64,
+    /// Amount that is added to the depth d_t of the inner structure of the struck vehicle, m.
+    pub structure_depth_m: Vec<f64>,
     /// Amount that is added to the friction coefficient μ.
     pub friction: f64,
 }
@@ -93,21 +98,21 @@ pub struct BodyCrush {
 pub struct CrushLaw {
     /// ln k in each range of crush depth, with k in N/m² (force per metre of outline and per metre
     /// of depth).
-    pub depth_log_stiffness: [f64; DEPTH_KNOTS_M.len()],
+    pub depth_log_stiffness: Vec<f64>,
     /// Logarithm of the factor on the stiffness of the skins along the side of the struck vehicle.
-    pub skin_log_factor: [f64; SKIN_KNOTS_M.len()],
+    pub skin_log_factor: Vec<f64>,
     /// Bulge b of the side of the struck vehicle along the side, m. A positive bulge brings the
     /// skins into contact earlier.
-    pub skin_bulge_m: [f64; SKIN_KNOTS_M.len()],
+    pub skin_bulge_m: Vec<f64>,
     /// ln k₂, with the stiffness k₂ of the inner structures in N/m².
     pub structure_log_stiffness: f64,
     /// Depth d_t of the inner structure of the struck vehicle below its skin along the side, m.
     #[serde(rename = "target_structure_depth_m")]
-    pub struck_structure_depth_m: [f64; STRUCK_STRUCTURE_KNOTS_M.len()],
+    pub struck_structure_depth_m: Vec<f64>,
     /// Depth d_b of the inner structure of the striking vehicle below its skin along the x axis of
     /// the striking vehicle, m.
     #[serde(rename = "bullet_structure_depth_m")]
-    pub striking_structure_depth_m: [f64; STRIKING_STRUCTURE_KNOTS_M.len()],
+    pub striking_structure_depth_m: Vec<f64>,
     /// d_θ: increase of the depth of the structures with the heading angle θ_b of the striking
     /// vehicle, m/rad.
     pub structure_depth_angle_m_rad: f64,
@@ -151,32 +156,74 @@ pub struct CrushLaw {
     /// Position x of the rear axle of the struck vehicle in its body axes, m, usually negative.
     /// Positions s along the side are measured from it. It is not fitted.
     pub rear_axle_x_m: f64,
+    /// Rear end of the struck vehicle, x in its body axes, m: there is no contact behind it. It is not
+    /// fitted. A law that does not store it has its rear end 0.96 m behind the axle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rear_end_x_m: Option<f64>,
     /// Parameters of each kind of body of the striking vehicle.
     pub bodies: Vec<BodyCrush>,
+    /// Parameters of each kind of body of the struck vehicle; empty where there is one kind only, whose
+    /// parameters are the shared ones.
+    #[serde(default, rename = "target_bodies", skip_serializing_if = "Vec::is_empty")]
+    pub struck_bodies: Vec<StruckBodyCrush>,
+    /// Where the piecewise linear functions have their knots.
+    #[serde(default = "CrushKnots::before")]
+    pub knots: CrushKnots,
 }
 
 impl BodyCrush {
     /// Prior of a body: it has no corrections of the shared parameters, and its recovery q is 0.5.
-    pub fn prior(name: impl Into<String>, nose: Nose) -> Self {
+    pub fn prior(name: impl Into<String>, nose: Nose, knots: &CrushKnots) -> Self {
         Self {
             name: name.into(),
             nose,
-            depth_log_factor: [0.0; DEPTH_KNOTS_M.len()],
+            depth_log_factor: none(&knots.depth_m),
             outline_log_factor: [0.0; N_OUTLINE_FACTORS],
             structure_log_factor: 0.0,
-            structure_depth_m: [0.0; STRIKING_STRUCTURE_KNOTS_M.len()],
+            structure_depth_m: none(&knots.striking_structure_m),
             recovery: 0.5,
             friction: 0.0,
         }
     }
 }
 
-/// Calls `visit` with each fitted parameter, in a fixed order, and the scale over which it is
-/// expected to vary. Order and scales are defined only here. `$reference` is `&` or `&mut`.
+impl StruckBodyCrush {
+    /// Prior of a struck body: it has no corrections of the shared parameters.
+    pub fn prior(name: impl Into<String>, knots: &CrushKnots) -> Self {
+        Self {
+            name: name.into(),
+            depth_log_factor: none(&knots.depth_m),
+            skin_log_factor: none(&knots.skin_m),
+            skin_bulge_m: none(&knots.skin_m),
+            structure_log_factor: 0.0,
+            structure_depth_m: none(&knots.struck_structure_m),
+            friction: 0.0,
+        }
+    }
+}
+
+/// No correction at any knot.
+fn none(knots: &[f64]) -> Vec<f64> {
+    vec![0.0; knots.len()]
+}
+
+/// To which collisions a fitted parameter applies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Applies {
+    All,
+    /// Those of one kind of striking body, by its index.
+    Striking(usize),
+    /// Those of one kind of struck body, by its index.
+    Struck(usize),
+}
+
+/// Calls `visit` with each fitted parameter, in a fixed order, the scale over which it is expected to
+/// vary, and the collisions to which it applies. Order and scales are defined only here. `$reference` is `&` or `&mut`.
 macro_rules! for_each_parameter {
     ($law:expr, $visit:expr, $($reference:tt)+) => {{
         let law = $law;
-        let mut visit = $visit;
+        let mut visit_one = $visit;
+        let mut visit = |value, scale| visit_one(value, scale, Applies::All);
         for value in $($reference)+ law.depth_log_stiffness { visit(value, 0.5); }
         for value in $($reference)+ law.skin_log_factor { visit(value, 0.4); }
         for value in $($reference)+ law.skin_bulge_m { visit(value, 0.03); }
@@ -199,12 +246,22 @@ macro_rules! for_each_parameter {
         visit($($reference)+ law.normal_share_depth_1_m, 1.0);
         visit($($reference)+ law.normal_share_place_1_m, 0.3);
         visit($($reference)+ law.damping_s_m, 0.1);
-        for body in $($reference)+ law.bodies {
+        for (idx, body) in ($($reference)+ law.bodies).into_iter().enumerate() {
+            let mut visit = |value, scale| visit_one(value, scale, Applies::Striking(idx));
             for value in $($reference)+ body.depth_log_factor { visit(value, 0.4); }
             for value in $($reference)+ body.outline_log_factor { visit(value, 0.5); }
             visit($($reference)+ body.structure_log_factor, 0.3);
             for value in $($reference)+ body.structure_depth_m { visit(value, 0.03); }
             visit($($reference)+ body.recovery, 0.15);
+            visit($($reference)+ body.friction, 0.1);
+        }
+        for (idx, body) in ($($reference)+ law.struck_bodies).into_iter().enumerate() {
+            let mut visit = |value, scale| visit_one(value, scale, Applies::Struck(idx));
+            for value in $($reference)+ body.depth_log_factor { visit(value, 0.4); }
+            for value in $($reference)+ body.skin_log_factor { visit(value, 0.3); }
+            for value in $($reference)+ body.skin_bulge_m { visit(value, 0.02); }
+            visit($($reference)+ body.structure_log_factor, 0.3);
+            for value in $($reference)+ body.structure_depth_m { visit(value, 0.03); }
             visit($($reference)+ body.friction, 0.1);
         }
     }};
@@ -216,20 +273,30 @@ impl CrushLaw {
     /// the outlines, and less where the wheel of the striking vehicle is. Half of a crush of 0.1 m
     /// is recovered. The friction coefficient is 0.4.
     ///
-    /// - `bodies`: kinds of bodies of the striking vehicle, at least one.
-    /// - `rear_axle_x_m`: position x of the rear axle of the struck vehicle in its body axes, m.
-    pub fn prior(bodies: Vec<BodyCrush>, rear_axle_x_m: f64) -> Self {
+    /// - `bodies`: kinds of bodies of the striking vehicle, at least one, with the default knots.
+    /// - `struck_bodies`: kinds of bodies of the struck vehicle, with the default knots; none where there
+    ///   is one only.
+    /// - `rear_axle_and_end_x_m`: positions x of rear axle and rear end of the struck vehicle in its body
+    ///   axes, m.
+    pub fn prior(
+        bodies: Vec<BodyCrush>,
+        struck_bodies: Vec<StruckBodyCrush>,
+        [rear_axle_x_m, rear_end_x_m]: [f64; 2],
+    ) -> Self {
+        let knots = CrushKnots::default();
         Self {
-            depth_log_stiffness: [11.5, 11.8, 12.3, 13.0, 13.5, 13.5, 13.8, 14.0],
-            skin_log_factor: [0.0; SKIN_KNOTS_M.len()],
-            skin_bulge_m: [0.0; SKIN_KNOTS_M.len()],
+            depth_log_stiffness: vec![11.5, 11.8, 12.3, 13.0, 13.5, 13.5, 13.8, 14.0, 14.0, 14.0],
+            skin_log_factor: none(&knots.skin_m),
+            skin_bulge_m: none(&knots.skin_m),
             structure_log_stiffness: 15.5,
-            struck_structure_depth_m: [
-                0.2, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.15, 0.2,
+            struck_structure_depth_m: vec![
+                0.2, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13,
+                0.13,
             ],
-            striking_structure_depth_m: [
-                -0.06, -0.06, -0.05, -0.02, 0.0, 0.0, 0.0, -0.03, -0.03, -0.03,
+            striking_structure_depth_m: vec![
+                -0.08, -0.08, -0.07, -0.02, 0.0, 0.0, 0.0, -0.03, -0.03, -0.03,
             ],
+            knots,
             structure_depth_angle_m_rad: 0.0,
             structure_tilt: 0.5,
             structure_friction: 0.0,
@@ -247,7 +314,9 @@ impl CrushLaw {
             normal_share_place_1_m: 0.0,
             damping_s_m: 0.05,
             rear_axle_x_m,
+            rear_end_x_m: Some(rear_end_x_m),
             bodies,
+            struck_bodies,
         }
     }
 
@@ -261,11 +330,22 @@ impl CrushLaw {
         }
     }
 
+    /// Rear end of the struck vehicle relative to its rear axle, m.
+    pub(super) fn rear_end_m(&self) -> f64 {
+        self.rear_end_x_m.map_or(REAR_END_BEFORE_M, |end| end - self.rear_axle_x_m)
+    }
+
+    /// Index of the kind of struck body of this name; `None` if the law has one kind only, or does not
+    /// know the name.
+    pub fn struck_body_idx(&self, name: &str) -> Option<usize> {
+        self.struck_bodies.iter().position(|body| body.name == name)
+    }
+
     /// All fitted parameters as a vector. The outlines of the bodies and the position of the rear
     /// axle are not fitted.
     pub fn to_vector(&self) -> Vec<f64> {
         let mut row = Vec::new();
-        for_each_parameter!(self, |value: &f64, _: f64| row.push(*value), &);
+        for_each_parameter!(self, |value: &f64, _: f64, _| row.push(*value), &);
         row
     }
 
@@ -276,7 +356,7 @@ impl CrushLaw {
         let mut values = row.iter();
         for_each_parameter!(
             &mut law,
-            |value: &mut f64, _: f64| {
+            |value: &mut f64, _: f64, _| {
                 if let Some(new) = values.next() {
                     *value = *new;
                 }
@@ -289,8 +369,43 @@ impl CrushLaw {
     /// Scale of each fitted parameter, by which its deviation from the prior is measured.
     pub(super) fn scales(&self) -> Vec<f64> {
         let mut row = Vec::new();
-        for_each_parameter!(self, |_: &f64, scale: f64| row.push(scale), &);
+        for_each_parameter!(self, |_: &f64, scale: f64, _| row.push(scale), &);
         row
+    }
+
+    /// To which collisions each fitted parameter applies.
+    pub(super) fn applications(&self) -> Vec<Applies> {
+        let mut row = Vec::new();
+        for_each_parameter!(self, |_: &f64, _: f64, applies| row.push(applies), &);
+        row
+    }
+
+    /// The lists of values at knots: what each is called in a file, its values, and its knots.
+    pub fn lists(&self) -> Vec<(String, &[f64], &[f64])> {
+        let knots = &self.knots;
+        let (depth, skin) = (knots.depth_m.as_slice(), knots.skin_m.as_slice());
+        let struck = knots.struck_structure_m.as_slice();
+        let striking = knots.striking_structure_m.as_slice();
+        let mut lists: Vec<(String, &[f64], &[f64])> = vec![
+            ("depth_log_stiffness".to_owned(), &self.depth_log_stiffness, depth),
+            ("skin_log_factor".to_owned(), &self.skin_log_factor, skin),
+            ("skin_bulge_m".to_owned(), &self.skin_bulge_m, skin),
+            ("target_structure_depth_m".to_owned(), &self.struck_structure_depth_m, struck),
+            ("bullet_structure_depth_m".to_owned(), &self.striking_structure_depth_m, striking),
+        ];
+        for (i, body) in self.bodies.iter().enumerate() {
+            let name = |list| format!("bodies[{i}].{list}");
+            lists.push((name("depth_log_factor"), &body.depth_log_factor, depth));
+            lists.push((name("structure_depth_m"), &body.structure_depth_m, striking));
+        }
+        for (i, body) in self.struck_bodies.iter().enumerate() {
+            let name = |list| format!("target_bodies[{i}].{list}");
+            lists.push((name("depth_log_factor"), &body.depth_log_factor, depth));
+            lists.push((name("skin_log_factor"), &body.skin_log_factor, skin));
+            lists.push((name("skin_bulge_m"), &body.skin_bulge_m, skin));
+            lists.push((name("structure_depth_m"), &body.structure_depth_m, struck));
+        }
+        lists
     }
 
     /// Whether every fitted parameter is finite.
@@ -305,14 +420,21 @@ mod tests {
 
     #[test]
     fn parameters_go_into_a_row_and_back() {
+        let knots = CrushKnots::default();
         let bodies =
-            vec![BodyCrush::prior("A", Nose::default()), BodyCrush::prior("B", Nose::default())];
-        let law = CrushLaw::prior(bodies, -1.54);
+            ["A", "B"].map(|name| BodyCrush::prior(name, Nose::default(), &knots)).to_vec();
+        let struck = ["", "A"].map(|name| StruckBodyCrush::prior(name, &knots)).to_vec();
+        let law = CrushLaw::prior(bodies, struck, [-1.54, -2.5]);
         let row: Vec<f64> = (0..law.to_vector().len()).map(|i| i as f64).collect();
         assert_eq!(law.with_vector(&row).to_vector(), row);
         assert_eq!(law.scales().len(), row.len());
         assert_eq!(law.body_idx(Some("B")), Some(1));
         assert_eq!(law.body_idx(Some("C")), None);
         assert_eq!(law.body_idx(None), None);
+        assert_eq!([law.struck_body_idx("A"), law.struck_body_idx("B")], [Some(1), None]);
+        assert_eq!(law.applications().last(), Some(&Applies::Struck(1)));
+        let lists = law.lists();
+        assert!(lists.iter().all(|(_, values, knots)| values.len() == knots.len()), "{lists:?}");
+        assert_eq!(lists.len(), 5 + 2 * 2 + 2 * 4);
     }
 }

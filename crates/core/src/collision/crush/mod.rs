@@ -19,11 +19,13 @@
 //! cross-validation on the shipped finite-element runs (`docs/VALIDATION.md`).
 
 mod fit;
+mod knots;
 mod law;
 mod outline;
 mod simulate;
 
 pub use fit::{CrushFit, CrushSample};
-pub use law::{BodyCrush, CrushLaw};
+pub use knots::CrushKnots;
+pub use law::{BodyCrush, CrushLaw, StruckBodyCrush};
 pub use outline::Nose;
 pub use simulate::{CrushHistory, CrushScenario};

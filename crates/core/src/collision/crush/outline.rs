@@ -8,12 +8,14 @@ use serde::{Deserialize, Serialize};
 const FRONT_SLOPE: f64 = 1.2;
 /// Length of an element of the straight parts of the outline, m.
 const STRAIGHT_ELEMENT_M: f64 = 0.1;
-const N_SIDE: usize = 8;
 const N_CORNER: usize = 12;
-const N_FRONT: usize = 6;
 
-/// Number of elements of the whole outline: side, corner and front.
-pub(super) const N_ELEMENTS: usize = N_SIDE + N_CORNER + N_FRONT;
+/// Length of the side behind the corner, past the front wheel, and width of the front beyond the corner,
+/// nearly to the other one, m.
+pub(super) const OUTLINE_M: [f64; 2] = [1.1, 1.4];
+/// The same of laws that do not store them.
+pub(super) const OUTLINE_BEFORE_M: [f64; 2] = [0.8, 0.6];
+
 /// Number of marks along the outline at which stiffness factors are given: rear end of the side;
 /// start, middle and end of the corner; inner end of the front.
 pub(super) const N_OUTLINE_FACTORS: usize = 5;
@@ -73,10 +75,13 @@ impl Nose {
     /// Fits the outline to points of first contact by linear least squares: the coordinates of
     /// these points are linear in x₀, y₀ and R.
     ///
-    /// - `contacts`: for each contact the angle of the wall, rad, and the point in body axes, m.
-    /// - returns `None` for fewer than two contacts, if the parameters are not determined by the
+    /// - `contacts`: for each contact the angle of the wall, rad, and the point in body axes, m. Walls
+    ///   that are met by the front, beyond the end of the corner, say nothing of it and are left out.
+    /// - returns `None` for fewer than two of the others, if the parameters are not determined by the
     ///   contacts, or if R or y₀ is not positive.
     pub fn fit(contacts: &[(f64, [f64; 2])]) -> Option<Self> {
+        let of_corner = |(angle, _): &&(f64, [f64; 2])| (0.0..=FRONT_SLOPE).contains(&angle.tan());
+        let contacts: Vec<_> = contacts.iter().filter(of_corner).collect();
         if contacts.len() < 2 {
             return None;
         }
@@ -108,17 +113,21 @@ impl Nose {
     ///
     /// - `log_factors`: logarithms of the stiffness factors at the five marks of
     ///   [`N_OUTLINE_FACTORS`]; they are interpolated linearly in between.
+    /// - `side_and_front_m`: length of the side and width of the front, m.
     pub(super) fn elements(
         &self,
         log_factors: &[f64; N_OUTLINE_FACTORS],
-    ) -> [SkinElement; N_ELEMENTS] {
+        side_and_front_m: [f64; 2],
+    ) -> Vec<SkinElement> {
+        let [n_side, n_front] = side_and_front_m
+            .map(|length_m| (length_m / STRAIGHT_ELEMENT_M).round().max(1.0) as usize);
         let between = |mark: usize, share: f64| {
             (log_factors[mark] * (1.0 - share) + log_factors[mark + 1] * share).exp()
         };
         let middle = |i: usize| i as f64 + 0.5;
-        std::array::from_fn(|i| {
-            if i < N_SIDE {
-                let behind = N_SIDE as f64 - middle(i);
+        let element = |i: usize| {
+            if i < n_side {
+                let behind = n_side as f64 - middle(i);
                 SkinElement {
                     position_body_m: [
                         self.corner_x_m - STRAIGHT_ELEMENT_M * behind,
@@ -126,10 +135,10 @@ impl Nose {
                     ],
                     normal_body: [0.0, 1.0],
                     length_m: STRAIGHT_ELEMENT_M,
-                    factor: between(0, middle(i) / N_SIDE as f64),
+                    factor: between(0, middle(i) / n_side as f64),
                 }
-            } else if i < N_SIDE + N_CORNER {
-                let share = middle(i - N_SIDE) / N_CORNER as f64;
+            } else if i < n_side + N_CORNER {
+                let share = middle(i - n_side) / N_CORNER as f64;
                 let slope = FRONT_SLOPE * share;
                 let length = slope.hypot(1.0);
                 SkinElement {
@@ -143,16 +152,17 @@ impl Nose {
                     },
                 }
             } else {
-                let inwards = middle(i - N_SIDE - N_CORNER);
+                let inwards = middle(i - n_side - N_CORNER);
                 let [x, y] = self.corner_point_m(FRONT_SLOPE);
                 SkinElement {
                     position_body_m: [x, y - STRAIGHT_ELEMENT_M * inwards],
                     normal_body: [1.0, 0.0],
                     length_m: STRAIGHT_ELEMENT_M,
-                    factor: between(3, inwards / N_FRONT as f64),
+                    factor: between(3, inwards / n_front as f64),
                 }
             }
-        })
+        };
+        (0..n_side + N_CORNER + n_front).map(element).collect()
     }
 }
 
@@ -171,12 +181,16 @@ mod tests {
         assert!((fitted.corner_x_m - 1.63).abs() < 1e-9, "{fitted:?}");
         assert!((fitted.radius_m - 0.42).abs() < 1e-9, "{fitted:?}");
         assert_eq!(Nose::fit(&contacts[..1]), None);
+        // A front that meets a flank at 80° touches it anywhere: of a corner it says nothing.
+        let across = [(1.4, [2.1, 0.2]), (1.55, [2.2, -0.4])];
+        let all: Vec<_> = contacts.iter().copied().chain(across).collect();
+        assert_eq!(Nose::fit(&all), Nose::fit(&contacts));
     }
 
     #[test]
     fn elements_follow_the_outline_with_unit_normals() {
         let nose = Nose::default();
-        let elements = nose.elements(&[0.0; N_OUTLINE_FACTORS]);
+        let elements = nose.elements(&[0.0; N_OUTLINE_FACTORS], OUTLINE_M);
         for pair in elements.windows(2) {
             let [[x0, y0], [x1, y1]] = [pair[0].position_body_m, pair[1].position_body_m];
             assert!(x1 >= x0 - 1e-12 && y1 <= y0 + 1e-12, "{pair:?}");

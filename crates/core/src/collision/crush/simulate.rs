@@ -1,16 +1,12 @@
 //! Simulates the crush of two vehicles: force over time from first contact on.
 
-use super::law::{
-    CrushLaw, DEPTH_KNOTS_M, SKIN_KNOTS_M, STRIKING_STRUCTURE_KNOTS_M, STRUCK_STRUCTURE_KNOTS_M,
-};
-use super::outline::{N_ELEMENTS, SkinElement};
+use super::knots::{CrushKnots, linear, slope, sums};
+use super::law::{CrushLaw, StruckBodyCrush};
+use super::outline::SkinElement;
 
 /// Largest overlap of an element that counts as crush, m. An element with a larger overlap has
 /// passed to the other side of the struck vehicle.
 const MAX_DEPTH_M: f64 = 0.9;
-/// Position of the rear end of the struck vehicle relative to its rear axle, m. There is no contact
-/// behind it.
-const REAR_END_M: f64 = -0.96;
 /// Gap beyond which the simulation ends, m: vehicles that are this far apart do not meet again
 /// within a quarter of a second.
 const PARTED_M: f64 = 0.1;
@@ -44,6 +40,9 @@ pub struct CrushScenario {
     pub contact_m: [f64; 2],
     /// Index of the kind of body of the striking vehicle in [`CrushLaw::bodies`].
     pub body_idx: usize,
+    /// Index of the kind of body of the struck vehicle in [`CrushLaw::struck_bodies`]; none where the
+    /// shared parameters hold.
+    pub struck_body_idx: Option<usize>,
 }
 
 /// Result of a simulation: one value for each time step; zeros after the vehicles have separated.
@@ -105,19 +104,33 @@ struct CrushContact {
 /// simulation.
 struct Springs<'a> {
     law: &'a CrushLaw,
+    knots: &'a CrushKnots,
     scenario: &'a CrushScenario,
-    elements: [SkinElement; N_ELEMENTS],
-    /// Depth of the inner structure of the striking vehicle at each element, with the influence of
-    /// the heading angle, m.
-    structure_m: [f64; N_ELEMENTS],
-    slope: [f64; DEPTH_KNOTS_M.len()],
-    load_at_knot: [f64; DEPTH_KNOTS_M.len()],
+    elements: Vec<Element>,
+    slope: Vec<f64>,
+    load_at_knot: Vec<f64>,
+    /// Of the struck vehicle along its side: logarithm of the factor of its skins, their bulge, m, and the
+    /// depth of its inner structure, m.
+    skin_log_factor: Vec<f64>,
+    skin_bulge_m: Vec<f64>,
+    struck_structure_m: Vec<f64>,
     structure_stiffness: f64,
     structure_softness_m: f64,
     structure_recovery_m: f64,
+    /// Friction coefficient at the reference depth.
+    friction: f64,
     friction_speed_m_s: f64,
-    greatest_depth_m: [f64; N_ELEMENTS],
-    load_there: [Load; N_ELEMENTS],
+    /// Rear end of the struck vehicle relative to its rear axle, m. There is no contact behind it.
+    rear_end_m: f64,
+}
+
+/// An element of the outline with what it has carried.
+struct Element {
+    skin: SkinElement,
+    /// Depth of the inner structure of the striking vehicle, with the influence of the heading angle, m.
+    structure_m: f64,
+    greatest_depth_m: f64,
+    load_there: Load,
 }
 
 /// Force of skins and inner structures per metre of outline, N/m.
@@ -165,37 +178,59 @@ impl CrushLaw {
 impl<'a> Springs<'a> {
     fn new(law: &'a CrushLaw, scenario: &'a CrushScenario) -> Option<Self> {
         let body = law.bodies.get(scenario.body_idx)?;
-        let elements = body.nose.elements(&body.outline_log_factor);
+        let struck = match scenario.struck_body_idx {
+            Some(idx) => Some(law.struck_bodies.get(idx)?),
+            None => None,
+        };
+        let knots = &law.knots;
+        let corrected = |values: &[f64], of: fn(&StruckBodyCrush) -> &Vec<f64>| match struck {
+            Some(struck) => sums(values, of(struck)),
+            None => values.to_vec(),
+        };
         let angle = scenario.theta_b_rad - REFERENCE_ANGLE_RAD;
-        let depth: [f64; STRIKING_STRUCTURE_KNOTS_M.len()] = std::array::from_fn(|i| {
-            law.striking_structure_depth_m[i]
-                + body.structure_depth_m[i]
-                + law.structure_depth_angle_m_rad * angle
-        });
-        let structure_m = elements.map(|element| {
-            let along = element.position_body_m[0] - body.nose.corner_x_m;
-            linear(&STRIKING_STRUCTURE_KNOTS_M, &depth, along)
-        });
-        let slope: [f64; DEPTH_KNOTS_M.len()] =
-            std::array::from_fn(|i| (law.depth_log_stiffness[i] + body.depth_log_factor[i]).exp());
-        let mut load_at_knot = [0.0; DEPTH_KNOTS_M.len()];
-        for i in 1..load_at_knot.len() {
-            let width = DEPTH_KNOTS_M[i] - DEPTH_KNOTS_M[i - 1];
-            load_at_knot[i] = load_at_knot[i - 1] + slope[i - 1] * width;
+        let by_angle = law.structure_depth_angle_m_rad * angle;
+        let striking_structure_m = sums(&law.striking_structure_depth_m, &body.structure_depth_m);
+        let element = |skin: SkinElement| {
+            let along = skin.position_body_m[0] - body.nose.corner_x_m;
+            let depth = linear(&knots.striking_structure_m, &striking_structure_m, along);
+            Element {
+                skin,
+                structure_m: depth + by_angle,
+                greatest_depth_m: 0.0,
+                load_there: Load::default(),
+            }
+        };
+        let elements = body.nose.elements(&body.outline_log_factor, knots.side_and_front_m);
+        let log_slope = corrected(&law.depth_log_stiffness, |struck| &struck.depth_log_factor);
+        let log_slope = sums(&log_slope, &body.depth_log_factor);
+        let slope: Vec<f64> = log_slope.into_iter().map(f64::exp).collect();
+        let mut load_at_knot = vec![0.0];
+        for (slope, ends) in slope.iter().zip(knots.depth_m.windows(2)) {
+            load_at_knot.push(load_at_knot.last()? + slope * (ends[1] - ends[0]));
         }
+        let structure_log_factor =
+            body.structure_log_factor + struck.map_or(0.0, |struck| struck.structure_log_factor);
         Some(Self {
             law,
+            knots,
             scenario,
-            elements,
-            structure_m,
+            elements: elements.into_iter().map(element).collect(),
             slope,
             load_at_knot,
-            structure_stiffness: (law.structure_log_stiffness + body.structure_log_factor).exp(),
+            skin_log_factor: corrected(&law.skin_log_factor, |struck| &struck.skin_log_factor),
+            skin_bulge_m: corrected(&law.skin_bulge_m, |struck| &struck.skin_bulge_m),
+            struck_structure_m: corrected(&law.struck_structure_depth_m, |struck| {
+                &struck.structure_depth_m
+            }),
+            structure_stiffness: (law.structure_log_stiffness + structure_log_factor).exp(),
             structure_softness_m: law.structure_log_softness.exp(),
             structure_recovery_m: law.structure_log_recovery.exp(),
+            friction: law.friction
+                + body.friction
+                + law.friction_angle_1_rad * angle
+                + struck.map_or(0.0, |struck| struck.friction),
             friction_speed_m_s: law.friction_log_speed.exp(),
-            greatest_depth_m: [0.0; N_ELEMENTS],
-            load_there: [Load::default(); N_ELEMENTS],
+            rear_end_m: law.rear_end_m(),
         })
     }
 
@@ -228,8 +263,8 @@ impl<'a> Springs<'a> {
         let turn_striking = striking.yaw_rad.sin_cos();
         let turn_between = (striking.yaw_rad - struck.yaw_rad).sin_cos();
         let mut sum = CrushContact { depth_m: f64::NEG_INFINITY, ..CrushContact::default() };
-        for i in 0..N_ELEMENTS {
-            let element = self.elements[i];
+        for i in 0..self.elements.len() {
+            let element = self.elements[i].skin;
             let arm_striking = turned(turn_striking, element.position_body_m);
             let arm_struck: [f64; 2] = std::array::from_fn(|a| {
                 striking.position_m[a] + arm_striking[a] - struck.position_m[a]
@@ -237,7 +272,7 @@ impl<'a> Springs<'a> {
             let [x, y] = turned_back(turn_struck, arm_struck);
             let depth = y - self.scenario.contact_m[1];
             let place = x - self.law.rear_axle_x_m;
-            if depth > MAX_DEPTH_M || place < REAR_END_M {
+            if depth > MAX_DEPTH_M || place < self.rear_end_m {
                 continue;
             }
             sum.depth_m = sum.depth_m.max(depth);
@@ -262,7 +297,7 @@ impl<'a> Springs<'a> {
             );
             let damping = (1.0 + self.law.damping_s_m * velocity[1]).max(0.0);
             let normal_force = total * element.length_m * damping;
-            let deepest = self.greatest_depth_m[i] - REFERENCE_DEPTH_M;
+            let deepest = self.elements[i].greatest_depth_m - REFERENCE_DEPTH_M;
             let normal =
                 self.normal(turned(turn_between, element.normal_body), [deepest, place, share]);
             let slip = velocity[0] * normal[1] - velocity[1] * normal[0];
@@ -285,28 +320,30 @@ impl<'a> Springs<'a> {
     /// Load of element `i` per metre of outline. If the overlap exceeds the largest so far, the
     /// load follows the loading curve and is stored; otherwise it follows the unloading curve.
     fn load(&mut self, i: usize, depth_m: f64, place_m: f64) -> Load {
-        let greatest = self.greatest_depth_m[i];
+        let element = &self.elements[i];
+        let greatest = element.greatest_depth_m;
         if depth_m < greatest {
-            return self.unloaded(self.load_there[i], greatest, greatest - depth_m);
+            return self.unloaded(element.load_there, greatest, greatest - depth_m);
         }
-        let crush = depth_m + linear(&SKIN_KNOTS_M, &self.law.skin_bulge_m, place_m);
+        let knots = self.knots;
+        let crush = depth_m + linear(&knots.skin_m, &self.skin_bulge_m, place_m);
         let skin = if crush > 0.0 {
-            let above = DEPTH_KNOTS_M.iter().rposition(|knot| *knot <= crush).unwrap_or(0);
-            let within = crush - DEPTH_KNOTS_M[above];
-            let place_factor = linear(&SKIN_KNOTS_M, &self.law.skin_log_factor, place_m).exp();
+            let above = knots.depth_m.iter().rposition(|knot| *knot <= crush).unwrap_or(0);
+            let within = crush - knots.depth_m[above];
+            let place_factor = linear(&knots.skin_m, &self.skin_log_factor, place_m).exp();
             (self.load_at_knot[above] + self.slope[above] * within)
-                * self.elements[i].factor
+                * element.skin.factor
                 * place_factor
         } else {
             0.0
         };
-        let struck_structure =
-            linear(&STRUCK_STRUCTURE_KNOTS_M, &self.law.struck_structure_depth_m, place_m);
-        let overlap = depth_m - struck_structure - self.structure_m[i];
+        let struck_structure = linear(&knots.struck_structure_m, &self.struck_structure_m, place_m);
+        let overlap = depth_m - struck_structure - element.structure_m;
         let structure = self.structure_stiffness * softplus(overlap, self.structure_softness_m);
-        self.greatest_depth_m[i] = depth_m;
-        self.load_there[i] = Load { skin, structure };
-        self.load_there[i]
+        let load = Load { skin, structure };
+        let element = &mut self.elements[i];
+        (element.greatest_depth_m, element.load_there) = (depth_m, load);
+        load
     }
 
     /// Load that remains of the largest load after the overlap has decreased by `back_m` from its
@@ -341,7 +378,7 @@ impl<'a> Springs<'a> {
         let share = law.normal_share
             + law.normal_share_depth_1_m * deepest_m
             + law.normal_share_place_1_m * place_m;
-        let rise = slope(&STRUCK_STRUCTURE_KNOTS_M, &law.struck_structure_depth_m, place_m);
+        let rise = slope(&self.knots.struck_structure_m, &self.struck_structure_m, place_m);
         let tilt = law.structure_tilt * structure_share * rise;
         let [x, y] = [share * striking_normal[0] - tilt, 1.0 - share + share * striking_normal[1]];
         let length = x.hypot(y) + 1e-9;
@@ -350,11 +387,8 @@ impl<'a> Springs<'a> {
 
     fn friction(&self, [deepest_m, structure_share]: [f64; 2], slip_m_s: f64) -> f64 {
         let law = self.law;
-        let angle = self.scenario.theta_b_rad - REFERENCE_ANGLE_RAD;
-        let limit = law.friction
-            + law.bodies[self.scenario.body_idx].friction
+        let limit = self.friction
             + law.friction_depth_1_m * deepest_m
-            + law.friction_angle_1_rad * angle
             + law.structure_friction * structure_share;
         limit * (slip_m_s / self.friction_speed_m_s).tanh()
     }
@@ -373,27 +407,6 @@ fn softplus(x: f64, width: f64) -> f64 {
     if ratio > 30.0 { x } else { width * ratio.exp().ln_1p() }
 }
 
-/// Piecewise linear interpolation of values at knots, constant beyond the ends.
-fn linear<const N: usize>(knots: &[f64; N], values: &[f64; N], x: f64) -> f64 {
-    let upper = knots.iter().position(|knot| x < *knot);
-    match upper {
-        None => values[N - 1],
-        Some(0) => values[0],
-        Some(i) => {
-            let share = (x - knots[i - 1]) / (knots[i] - knots[i - 1]);
-            values[i - 1] * (1.0 - share) + values[i] * share
-        }
-    }
-}
-
-/// Derivative of [`linear`] with respect to `x`.
-fn slope<const N: usize>(knots: &[f64; N], values: &[f64; N], x: f64) -> f64 {
-    match knots.iter().position(|knot| x < *knot) {
-        None | Some(0) => 0.0,
-        Some(i) => (values[i] - values[i - 1]) / (knots[i] - knots[i - 1]),
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use super::super::{BodyCrush, Nose};
@@ -408,11 +421,14 @@ pub(super) mod tests {
             theta_b_rad: 0.35,
             contact_m: [-1.5, -0.925],
             body_idx: 0,
+            struck_body_idx: None,
         }
     }
 
     pub(crate) fn law() -> CrushLaw {
-        CrushLaw::prior(vec![BodyCrush::prior("A", Nose::default())], -1.54)
+        let knots = CrushKnots::default();
+        let struck = ["A", "B"].map(|name| StruckBodyCrush::prior(name, &knots)).to_vec();
+        CrushLaw::prior(vec![BodyCrush::prior("A", Nose::default(), &knots)], struck, [-1.54, -2.5])
     }
 
     #[test]
@@ -453,5 +469,19 @@ pub(super) mod tests {
     #[test]
     fn an_unknown_body_is_none() {
         assert_eq!(law().simulate(&CrushScenario { body_idx: 3, ..example() }, 1, 1e-3), None);
+        let struck = CrushScenario { struck_body_idx: Some(2), ..example() };
+        assert_eq!(law().simulate(&struck, 1, 1e-3), None);
+    }
+
+    #[test]
+    fn a_stiffer_struck_body_is_crushed_less() {
+        let mut law = law();
+        law.struck_bodies[1].depth_log_factor.fill(0.5);
+        let depth = |struck_body_idx| {
+            let history = law.simulate(&CrushScenario { struck_body_idx, ..example() }, 250, 1e-3);
+            history.unwrap().depth_m.into_iter().fold(0.0, f64::max)
+        };
+        assert_eq!(depth(Some(0)), depth(None), "no correction");
+        assert!(depth(Some(1)) < 0.95 * depth(None), "{} {}", depth(Some(1)), depth(None));
     }
 }

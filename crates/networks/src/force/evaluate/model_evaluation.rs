@@ -120,6 +120,7 @@ fn known(scenario: &ForceScenario, columns: ColumnSet) -> ForceScenario {
             contact_m: None,
             striking_position_m: None,
             striking_body: None,
+            struck_body: None,
             ..scenario.clone()
         },
     }

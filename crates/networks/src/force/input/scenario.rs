@@ -8,10 +8,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use impactlab_core::collision::{
-    DEFAULT_FRICTION_LIMIT, Impact, ImpactCase, RestitutionForm, Scenario, ScenarioError,
-    default_restitution,
-};
+use crate::force::ContactLaw;
+use impactlab_core::collision::{Impact, ImpactCase, Scenario, ScenarioError};
 use impactlab_core::data::{Case, DataError, ForceAttributes, StruckSide, Value};
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::ranges::{
@@ -55,6 +53,9 @@ pub struct ForceScenario {
     /// Kind of body of the striking vehicle, where it is known.
     #[serde(rename = "bullet_body")]
     pub striking_body: Option<String>,
+    /// Kind of body of the struck vehicle, where it is known.
+    #[serde(default, rename = "target_body", skip_serializing_if = "Option::is_none")]
+    pub struck_body: Option<String>,
     /// Yaw inertias of the struck and the striking vehicle, kg m², where they are known.
     pub yaw_inertia_kg_m2: [Option<f64>; 2],
     /// Restitution and friction at the contact, where they are known. The network does not use them;
@@ -67,32 +68,6 @@ fn turns_not(yaw_rate_rad_s: &[f64; 2]) -> bool {
     *yaw_rate_rad_s == [0.0; 2]
 }
 
-/// Restitution and friction of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct ContactLaw {
-    /// Coefficient of restitution e, 0 to 1.
-    pub restitution: f64,
-    /// What restitution acts on.
-    #[serde(default)]
-    pub restitution_form: RestitutionForm,
-    /// Friction limit μ_c, the largest ratio of tangential to normal impulse, 0 to 10.
-    pub friction_limit: f64,
-}
-
-impl ContactLaw {
-    /// What holds where nothing is known.
-    ///
-    /// - `closing_m_s`: speed at which the contact points approach each other, in all directions, m/s.
-    pub fn at_closing_speed(closing_m_s: f64) -> Self {
-        Self {
-            restitution: default_restitution(closing_m_s),
-            restitution_form: RestitutionForm::default(),
-            friction_limit: DEFAULT_FRICTION_LIMIT,
-        }
-    }
-}
-
 impl ForceScenario {
     /// The scenario of a case of a force data set.
     ///
@@ -102,16 +77,22 @@ impl ForceScenario {
         let attributes = ForceAttributes::read(&case.attributes)?;
         let number = |name| case.attributes.number(name);
         let position = number("bullet_x0_m").zip(number("bullet_y0_m"));
-        let striking_body = case.attributes.get("bullet_body").map(|value| match value {
-            Value::Text(text) => text.clone(),
-            Value::Number(number) => number.to_string(),
-        });
-        let striking_position_m = position.map(|(x, y)| [x, y]);
-        Ok(Self { striking_position_m, striking_body, ..Self::from_attributes(&attributes) })
+        let body = |name| {
+            case.attributes.get(name).map(|value| match value {
+                Value::Text(text) => text.clone(),
+                Value::Number(number) => number.to_string(),
+            })
+        };
+        Ok(Self {
+            striking_position_m: position.map(|(x, y)| [x, y]),
+            striking_body: body("bullet_body"),
+            struck_body: body("target_body"),
+            ..Self::from_attributes(&attributes)
+        })
     }
 
-    /// The scenario of a case's attributes, without position and body of the striking vehicle,
-    /// which they do not contain.
+    /// The scenario of a case's attributes, without bodies and the position of the striking
+    /// vehicle, which they do not contain.
     pub fn from_attributes(attributes: &ForceAttributes) -> Self {
         let [_, contact_y_m] = attributes.contact_m;
         let theta = attributes.theta_b_rad;
@@ -128,6 +109,7 @@ impl ForceScenario {
             normal_rad: attributes.contact_normal_rad.or_else(|| end_normal_rad(attributes)),
             striking_position_m: None,
             striking_body: None,
+            struck_body: None,
             yaw_inertia_kg_m2: attributes.yaw_inertia_kg_m2,
             contact_law: None,
         }
@@ -162,6 +144,7 @@ impl ForceScenario {
                 geometry.struck.body_from_world([geometry.striking.x_m, geometry.striking.y_m]),
             ),
             striking_body: None,
+            struck_body: None,
             yaw_inertia_kg_m2: [Some(struck.yaw_inertia_kg_m2), Some(striking.yaw_inertia_kg_m2)],
             contact_law: Some(ContactLaw {
                 restitution: surface.restitution,
@@ -322,7 +305,9 @@ pub(crate) mod tests {
     use crate::force::ForceCase;
     use crate::force::input::shipped;
     use crate::learning::{TEST_SHARE, split};
-    use impactlab_core::collision::{ContactLocation, DEFAULT_RESTITUTION, RESTITUTION_SPEEDS_M_S};
+    use impactlab_core::collision::{
+        ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, RESTITUTION_SPEEDS_M_S,
+    };
 
     pub(crate) fn example(side: StruckSide) -> ForceScenario {
         let right = ForceScenario {
@@ -336,6 +321,7 @@ pub(crate) mod tests {
             normal_rad: None,
             striking_position_m: Some([-2.75, -2.5]),
             striking_body: Some("A".to_owned()),
+            struck_body: None,
             yaw_inertia_kg_m2: [Some(3600.0), None],
             contact_law: None,
         };

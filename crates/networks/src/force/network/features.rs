@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::force::physics::CentreCurve;
+use crate::force::physics::{Bodies, CentreCurve};
 use crate::force::{ForceCase, ForceScenario};
 use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
 use impactlab_core::uncertainty::{CURVE_N_INSTANTS, Caveat, CaveatKind};
@@ -85,13 +85,17 @@ impl OutsideTraining {
     }
 }
 
-/// The features of a canonical scenario: its numbers, then its physics, then the body, then the yaw rates.
+/// The features of a canonical scenario: its numbers, then its physics, then the bodies of the striking and
+/// of the struck vehicle, then the yaw rates.
+///
+/// - `n_bodies`: kinds of bodies of the striking and of the struck vehicle; of the latter 0 where there is
+///   one only.
 pub(crate) fn features(
     scenario: &ForceScenario,
     centre: &CentreCurve,
     contact_m: [f64; 2],
-    body_idx: usize,
-    n_bodies: usize,
+    bodies: Bodies,
+    n_bodies: [usize; 2],
 ) -> Vec<f64> {
     let numbers = scenario_numbers(scenario, contact_m);
     let [px, py] = centre.impulse_n_s;
@@ -105,9 +109,12 @@ pub(crate) fn features(
         centre.scale_n.max(1.0).ln(),
         centre.curve.peak().1,
     ];
-    let body = (0..n_bodies).map(|i| f64::from(u8::from(i == body_idx)));
+    let [n_striking, n_struck] = n_bodies;
+    let is = |is_it: bool| f64::from(u8::from(is_it));
+    let striking = (0..n_striking).map(|i| is(i == bodies.striking));
+    let struck = (0..n_struck).map(|i| is(Some(i) == bodies.struck));
     let numbers = &numbers[..N_SCENARIO];
-    let all = numbers.iter().copied().chain(physics).chain(body);
+    let all = numbers.iter().copied().chain(physics).chain(striking).chain(struck);
     all.chain(scenario.yaw_rate_rad_s).collect()
 }
 
@@ -156,9 +163,9 @@ impl Standardisation {
     ///
     /// # Errors
     /// [`NnError`] with the first number or list that is refused.
-    pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
+    pub(crate) fn check(&self, [n_striking, n_struck]: [usize; 2]) -> Result<(), NnError> {
         let n_turning = self.n_turning();
-        let n_features = N_FEATURES + n_bodies + n_turning;
+        let n_features = N_FEATURES + n_striking + n_struck + n_turning;
         check_length("standardisation.mean", self.mean.len(), n_features)?;
         check_length("standardisation.std", self.std.len(), n_features)?;
         check_length("standardisation.range", self.range.len(), N_SCENARIO + n_turning)?;
@@ -207,8 +214,11 @@ impl Standardisation {
 pub struct OpenFeatures {
     /// Contact points of equal probability, body axes of the struck vehicle, canonical, m.
     pub contact_m: Vec<[f64; 2]>,
-    /// Probability of each body.
+    /// Probability of each body of the striking vehicle.
     pub body: Vec<f64>,
+    /// Probability of each body of the struck vehicle; none where there is one kind only.
+    #[serde(default, rename = "target_body", skip_serializing_if = "Vec::is_empty")]
+    pub struck_body: Vec<f64>,
 }
 
 impl OpenFeatures {
@@ -216,11 +226,14 @@ impl OpenFeatures {
     ///
     /// # Errors
     /// [`NnError`] with the first number or list that is refused.
-    pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
-        check_length("open.body", self.body.len(), n_bodies)?;
-        check_numbers("open.body", &self.body, Expected::Share)?;
-        if n_bodies > 1 {
-            check_number("open.body (sum)", self.body.iter().sum(), Expected::Positive)?;
+    pub(crate) fn check(&self, n_bodies: [usize; 2]) -> Result<(), NnError> {
+        let lists = [("open.body", &self.body), ("open.target_body", &self.struck_body)];
+        for ((name, shares), n) in lists.into_iter().zip(n_bodies) {
+            check_length(name, shares.len(), n)?;
+            check_numbers(name, shares, Expected::Share)?;
+            if n > 1 {
+                check_number(&format!("{name} (sum)"), shares.iter().sum(), Expected::Positive)?;
+            }
         }
         let n_contacts = self.contact_m.len() as f64;
         check_number("open.contact_m (number)", n_contacts, Expected::Magnitude(MAX_OPEN_CONTACTS))
@@ -228,7 +241,13 @@ impl OpenFeatures {
 
     /// The distribution over the training cases: contacts at the middles of `n_contacts` equal
     /// shares of the cases ordered by x, bodies by frequency.
-    pub(crate) fn from_cases(cases: &[ForceCase], bodies: &[String], n_contacts: usize) -> Self {
+    ///
+    /// - `bodies`: kinds of bodies of the striking and of the struck vehicle.
+    pub(crate) fn from_cases(
+        cases: &[ForceCase],
+        bodies: [&[String]; 2],
+        n_contacts: usize,
+    ) -> Self {
         let mut contacts: Vec<[f64; 2]> =
             cases.iter().filter_map(|case| case.scenario.contact_m).collect();
         contacts.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -237,13 +256,19 @@ impl OpenFeatures {
         let contact_m = (0..n_contacts)
             .filter_map(|i| contacts.get((2 * i + 1) * n / (2 * n_contacts)).copied())
             .collect();
-        let count = |name: &String| {
-            let is_it = |case: &&ForceCase| {
-                case.scenario.striking_body.as_deref().unwrap_or_default() == name
+        let shares = |names: &[String], of: fn(&ForceScenario) -> &Option<String>| {
+            let share = |name: &String| {
+                let is_it =
+                    |case: &&ForceCase| of(&case.scenario).as_deref().unwrap_or_default() == name;
+                cases.iter().filter(is_it).count() as f64 / cases.len().max(1) as f64
             };
-            cases.iter().filter(is_it).count() as f64
+            names.iter().map(share).collect()
         };
-        let body = bodies.iter().map(|name| count(name) / cases.len().max(1) as f64).collect();
-        Self { contact_m, body }
+        let [striking, struck] = bodies;
+        Self {
+            contact_m,
+            body: shares(striking, |scenario| &scenario.striking_body),
+            struck_body: shares(struck, |scenario| &scenario.struck_body),
+        }
     }
 }

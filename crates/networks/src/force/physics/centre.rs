@@ -5,7 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::physics::bare::BareForce;
 use crate::force::physics::committee::Committee;
-use crate::force::physics::crush_laws::{NO_NAME, body_name, crush_scenario, fit_laws};
+use crate::force::physics::crush_laws::{
+    Bodies, NO_NAME, body_name, crush_scenario, fit_laws, struck_body_name,
+};
 use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
 use crate::learning::{FitSteps, LearningError, Split, TrainingProgress, folds};
 use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
@@ -13,6 +15,8 @@ use impactlab_core::collision::crush::{CrushHistory, CrushLaw, CrushScenario};
 use impactlab_core::collision::{Impact, PulseShape};
 use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
+/// Largest length of a side and width of a front, m.
+const LONGEST_OUTLINE_M: Expected = Expected::Magnitude(3.0);
 /// Share of the peak below which a force does not count as contact.
 const CONTACT_SHARE: f64 = 0.01;
 
@@ -180,6 +184,17 @@ impl CentreModel {
         for (i, law) in self.laws.iter().enumerate() {
             let name = format!("centre.laws[{i}]");
             check_length(&format!("{name}.bodies"), law.bodies.len(), bodies.len().max(1))?;
+            let n_struck = self.struck_bodies().len();
+            check_length(&format!("{name}.target_bodies"), law.struck_bodies.len(), n_struck)?;
+            for (list, values, knots) in law.lists() {
+                check_length(&format!("{name}.knots"), knots.len().min(1), 1)?;
+                check_length(&format!("{name}.{list}"), values.len(), knots.len())?;
+                let steps: Vec<f64> = knots.windows(2).map(|ends| ends[1] - ends[0]).collect();
+                check_numbers(&format!("{name}.knots"), &steps, Expected::Positive)?;
+            }
+            let outline = format!("{name}.knots.outline_m");
+            check_numbers(&outline, &law.knots.side_and_front_m, Expected::Positive)?;
+            check_numbers(&outline, &law.knots.side_and_front_m, LONGEST_OUTLINE_M)?;
             // Logarithms of stiffness reach 17, exponents 3 and positions a few metres.
             check_numbers(&name, &law.to_vector(), Expected::Magnitude(50.0))?;
             for (j, body) in law.bodies.iter().enumerate() {
@@ -204,6 +219,13 @@ impl CentreModel {
         bodies.iter().map(|body| body.name.clone()).collect()
     }
 
+    /// The kinds of bodies of the struck vehicle in the training cases, in the order of their index, with
+    /// an empty name for cases that do not name it; none where there is one kind only.
+    pub fn struck_bodies(&self) -> Vec<String> {
+        let bodies = self.laws.first().map(|law| law.struck_bodies.as_slice()).unwrap_or_default();
+        bodies.iter().map(|body| body.name.clone()).collect()
+    }
+
     /// Position of the struck vehicle's rear axle in its body axes, m, from which contact offsets
     /// are measured.
     pub fn rear_axle_x_m(&self) -> f64 {
@@ -214,24 +236,26 @@ impl CentreModel {
     /// is one.
     ///
     /// - `scenario`: canonical.
-    /// - `contact_m`, `body_idx`: contact point and kind of body, which the scenario may leave open.
+    /// - `contact_m`, `bodies`: contact point and kinds of bodies, which the scenario may leave open.
     ///
     /// # Errors
     /// [`ForceError::Impact`], [`ForceError::Regression`].
-    pub fn curve(
+    pub(crate) fn curve(
         &self,
         scenario: &ForceScenario,
         contact_m: [f64; 2],
-        body_idx: usize,
+        bodies: Bodies,
     ) -> Result<CentreCurve, ForceError> {
         let laws: Vec<&CrushLaw> = self.laws.iter().collect();
-        let mut history = self.history(&laws, scenario, contact_m, body_idx)?;
+        let mut history = self.history(&laws, scenario, contact_m, bodies)?;
         if let Some(committee) = &self.committee {
-            let body = self.laws.first().and_then(|law| law.bodies.get(body_idx));
-            let name = body.map(|body| body.name.clone()).filter(|name| name != NO_NAME);
+            let name = |names: Vec<String>, idx: Option<usize>| {
+                names.into_iter().nth(idx?).filter(|name| name != NO_NAME)
+            };
             let known = ForceScenario {
                 contact_m: Some(contact_m),
-                striking_body: name,
+                striking_body: name(self.bodies(), Some(bodies.striking)),
+                struck_body: name(self.struck_bodies(), bodies.struck),
                 ..scenario.clone()
             };
             history.curve = committee.curve(&history.curve, &known)?;
@@ -265,17 +289,19 @@ impl CentreModel {
         };
         let history = |(idx, case): (usize, &ForceCase)| {
             let laws: Vec<&CrushLaw> = law_of(idx).into_iter().collect();
-            let (contact_m, body_idx) = self.known(&case.scenario);
-            self.history(&laws, &case.scenario, contact_m, body_idx)
+            let (contact_m, bodies) = self.known(&case.scenario);
+            self.history(&laws, &case.scenario, contact_m, bodies)
         };
         cases.iter().enumerate().map(history).collect()
     }
 
-    /// Contact and body of a training case.
-    fn known(&self, scenario: &ForceScenario) -> ([f64; 2], usize) {
+    /// Contact and bodies of a training case.
+    fn known(&self, scenario: &ForceScenario) -> ([f64; 2], Bodies) {
         let contact = scenario.contact_m.unwrap_or([self.rear_axle_x_m(), 0.0]);
-        let body = self.laws.first().and_then(|law| law.body_idx(body_name(scenario)));
-        (contact, body.unwrap_or(0))
+        let law = self.laws.first();
+        let striking = law.and_then(|law| law.body_idx(body_name(scenario))).unwrap_or(0);
+        let struck = law.and_then(|law| law.struck_body_idx(struck_body_name(scenario)));
+        (contact, Bodies { striking, struck })
     }
 
     fn history(
@@ -283,11 +309,11 @@ impl CentreModel {
         laws: &[&CrushLaw],
         scenario: &ForceScenario,
         contact_m: [f64; 2],
-        body_idx: usize,
+        bodies: Bodies,
     ) -> Result<CentreHistory, ForceError> {
         Ok(match self.kind {
             Centre::Committee | Centre::Crush => {
-                mean_history(laws, &crush_scenario(scenario, contact_m, body_idx))
+                mean_history(laws, &crush_scenario(scenario, contact_m, bodies))
             }
             Centre::Momentum => {
                 let momentum = self.impact(scenario, contact_m).solve()?.impulse_world_n_s;

@@ -20,5 +20,6 @@ pub use bare::{
 #[cfg(test)]
 pub(crate) use centre::tests::haversine_centre;
 pub use centre::{CentreCurve, CentreModel};
+pub(crate) use crush_laws::Bodies;
 pub use momentum::MomentumModel;
 pub(crate) use residuals::{DURATION_UNIT_S, ResidualModel};

@@ -70,6 +70,12 @@ impl ForceModel {
         self.centre.bodies()
     }
 
+    /// The kinds of bodies of the struck vehicle that the model knows, with an empty name for those that
+    /// the training data do not name; none where there is one kind only.
+    pub fn struck_bodies(&self) -> Vec<String> {
+        self.centre.struck_bodies()
+    }
+
     /// Position of the rear axle of the struck vehicle in its body axes, m, from which contact
     /// offsets are measured.
     pub fn rear_axle_x_m(&self) -> f64 {
@@ -122,19 +128,21 @@ impl ModelFile for ForceModel {
         let residuals: ResidualModel = file.get("residuals")?;
         residuals.check(config.network.factors)?;
         let stored: Vec<StoredCase> = file.get("cases")?;
-        let n_bodies = centre.bodies().len();
+        let n_bodies = [centre.bodies().len(), centre.struck_bodies().len()];
         let standardisation: Standardisation = file.get("standardisation")?;
         standardisation.check(n_bodies)?;
         let open: OpenFeatures = file.get("open")?;
         open.check(n_bodies)?;
-        let n_variants = open.contact_m.len().saturating_mul(n_bodies);
+        let [n_striking, n_struck] = n_bodies;
+        let n_kinds = n_striking.saturating_mul(n_struck.max(1));
+        let n_variants = open.contact_m.len().saturating_mul(n_kinds);
         config.network.check_memory("variants", n_variants)?;
         let record: ForceRecord = file.get("record")?;
         record.detail.variance_factors.check("record.variance_factors")?;
         let mut rng = random_stream(0, "force network", 0);
         let tensors = file.take_group("network");
         let parameters = Parameters::new(DType::F32).at_most(parameter_budget(&tensors));
-        let n_more = n_bodies + standardisation.n_turning();
+        let n_more = n_striking + n_struck + standardisation.n_turning();
         let network = ForceNetwork::new(&config.network, n_more, &mut rng, parameters)?;
         network.parameters().import(&tensors)?;
         let missing = || NnError::MissingTensor { name: format!("cases.{CURVES}") };

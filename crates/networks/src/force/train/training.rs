@@ -6,7 +6,7 @@ use candle_core::DType;
 use rand::seq::SliceRandom;
 
 use crate::force::network::{ForceDomain, ForceNetwork, OpenFeatures, Standardisation, features};
-use crate::force::physics::{CentreCurve, CentreModel, ResidualModel};
+use crate::force::physics::{Bodies, CentreCurve, CentreModel, ResidualModel};
 use crate::force::train::batch::CaseTensors;
 use crate::force::train::loss::{Loss, LossTerms};
 use crate::force::train::{CalibrationCase, ForceModel, VarianceCalibration};
@@ -222,18 +222,18 @@ impl<'a> ForceTrainingRun<'a> {
         centres: Vec<CentreCurve>,
     ) -> Result<Self, ForceError> {
         let config = &settings.config;
-        let bodies = centre.bodies();
+        let (bodies, struck_bodies) = (centre.bodies(), centre.struck_bodies());
         let parts = split(&set.train, settings.seed, config.training.validation_share);
         let rows: Vec<Vec<f64>> = set
             .train
             .iter()
             .zip(&centres)
-            .map(|(case, centre)| case_features(case, centre, &bodies))
+            .map(|(case, centre)| case_features(case, centre, [&bodies, &struck_bodies]))
             .collect();
         let seen: Vec<Vec<f64>> = parts.train.iter().map(|&idx| rows[idx].clone()).collect();
         let standardisation = Standardisation::from_rows(&seen);
         let rows = rows.iter().map(|row| standardisation.apply(row)).collect();
-        let n_more = bodies.len() + standardisation.n_turning();
+        let n_more = bodies.len() + struck_bodies.len() + standardisation.n_turning();
         let cases: Vec<&ForceCase> = set.train.iter().collect();
         let residuals = ResidualModel::fit(&set.train, &centres, config.network.factors);
         let tensors =
@@ -368,7 +368,8 @@ impl<'a> ForceTrainingRun<'a> {
             train: ids(&self.learned),
             ..ForceRecord::new(set, self.settings, detail, self.history)
         };
-        let open = OpenFeatures::from_cases(&set.train, &self.centre.bodies(), N_OPEN_CONTACTS);
+        let bodies = [&*self.centre.bodies(), &*self.centre.struck_bodies()];
+        let open = OpenFeatures::from_cases(&set.train, bodies, N_OPEN_CONTACTS);
         Ok(ForceModel {
             config: self.settings.config.clone(),
             centre: self.centre,
@@ -464,12 +465,21 @@ impl EpochLoop for ForceTrainingRun<'_> {
     }
 }
 
-/// Features of a training case, whose contact point and body are known.
-fn case_features(case: &ForceCase, centre: &CentreCurve, bodies: &[String]) -> Vec<f64> {
-    let name = case.scenario.striking_body.as_deref().unwrap_or_default();
-    let body_idx = bodies.iter().position(|body| body == name).unwrap_or(0);
-    let contact = case.scenario.contact_m.unwrap_or_default();
-    features(&case.scenario, centre, contact, body_idx, bodies.len())
+/// Features of a training case, whose contact point and bodies are known.
+///
+/// - `kinds`: those of the bodies of the striking and of the struck vehicle.
+fn case_features(case: &ForceCase, centre: &CentreCurve, kinds: [&[String]; 2]) -> Vec<f64> {
+    let scenario = &case.scenario;
+    let idx = |kinds: &[String], name: &Option<String>| {
+        kinds.iter().position(|kind| kind == name.as_deref().unwrap_or_default())
+    };
+    let [striking, struck] = kinds;
+    let bodies = Bodies {
+        striking: idx(striking, &scenario.striking_body).unwrap_or(0),
+        struck: idx(struck, &scenario.struck_body),
+    };
+    let contact = scenario.contact_m.unwrap_or_default();
+    features(scenario, centre, contact, bodies, kinds.map(<[String]>::len))
 }
 
 fn optimizer_config(config: &ForceConfig) -> AdamWConfig {

@@ -35,6 +35,9 @@ pub struct PredictForceRequest {
     /// leaves it open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
+    /// The same of the struck vehicle.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub struck_body: Option<String>,
     /// Whether the contact point is left open: it is drawn from that of the training cases.
     #[serde(default)]
     pub open_contact: bool,
@@ -108,6 +111,8 @@ pub struct PredictForceReport {
     pub is_contact_open: bool,
     /// Whether the striking vehicle's body is open and drawn from that of the training cases.
     pub is_body_open: bool,
+    /// The same of the struck vehicle's body.
+    pub is_struck_body_open: bool,
 }
 
 /// An impulse with its intervals, N s.
@@ -162,6 +167,7 @@ impl PredictForceRequest {
             collision,
             model: ModelChoice::default(),
             body: None,
+            struck_body: None,
             open_contact: false,
             samples: 0,
             seed: 0,
@@ -226,6 +232,15 @@ impl ForceQuestion {
     }
 }
 
+/// That a body is not used, since the network knows one kind only.
+fn one_kind(what: Phrase, body: &str) -> Caveat {
+    let reason = Phrase::new(
+        "the cases that the force network has learned from have one kind",
+        "die Fälle, an denen das Kraftnetz gelernt hat, haben nur eine Art",
+    );
+    Caveat::not_used(what.with(PhraseValue::Name(body.to_owned())), reason)
+}
+
 impl Question for PredictForceRequest {
     type Answer = PredictForceAnswer;
     type Report = Answer<PredictForceReport>;
@@ -262,18 +277,19 @@ impl Question for PredictForceRequest {
         let mut collision = numbers;
         if let Some(body) = &self.body {
             collision.striking_body = Some(body.clone());
-            if model.bodies().len() == 1 {
-                let what = Phrase::new(
-                    "body of the striking vehicle, {0}",
-                    "Aufbau des stoßenden Fahrzeugs, {0}",
-                );
-                let reason = Phrase::new(
-                    "the cases that the force network has learned from have one kind",
-                    "die Fälle, an denen das Kraftnetz gelernt hat, haben nur eine Art",
-                );
-                let what = what.with(PhraseValue::Name(body.clone()));
-                unused.push(Caveat::not_used(what, reason));
-            }
+            let what = Phrase::new(
+                "body of the striking vehicle, {0}",
+                "Aufbau des stoßenden Fahrzeugs, {0}",
+            );
+            unused.extend((model.bodies().len() == 1).then(|| one_kind(what, body)));
+        }
+        if let Some(body) = &self.struck_body {
+            collision.struck_body = Some(body.clone());
+            let what = Phrase::new(
+                "body of the struck vehicle, {0}",
+                "Aufbau des gestoßenen Fahrzeugs, {0}",
+            );
+            unused.extend(model.struck_bodies().is_empty().then(|| one_kind(what, body)));
         }
         if self.open_contact {
             (collision.contact_m, collision.normal_rad) = (None, None);
@@ -332,6 +348,7 @@ impl PredictForceReport {
             outside_training: prediction.outside.clone(),
             is_contact_open: prediction.is_contact_open,
             is_body_open: prediction.is_body_open,
+            is_struck_body_open: prediction.is_struck_body_open,
         }
     }
 }

@@ -23,8 +23,7 @@ pub enum ColumnSet {
     /// θ alone: masses, velocities and heading of the striking vehicle.
     #[default]
     Theta,
-    /// θ, the contact point along the struck vehicle, and the kind of the body of the striking
-    /// vehicle.
+    /// θ, the contact point along the struck vehicle, and the kinds of the bodies of both vehicles.
     ThetaContactAndBody,
 }
 
@@ -38,8 +37,12 @@ pub struct FeatureMap {
     /// Whether yaw rates before the impact are columns.
     #[serde(default)]
     turns: bool,
-    /// Kinds of body, sorted. The first has no column of its own.
+    /// Kinds of body of the striking vehicle, sorted. The first has no column of its own.
     bodies: Vec<String>,
+    /// The same of the struck vehicle, with an empty name for cases that do not name it; none where there
+    /// is one kind only.
+    #[serde(default, rename = "target_bodies")]
+    struck_bodies: Vec<String>,
 }
 
 impl ColumnSet {
@@ -65,18 +68,22 @@ impl FeatureMap {
         bodies.dedup();
         let contact_x_m = contacts.iter().sum::<f64>() / contacts.len().max(1) as f64;
         let turns = scenarios().any(|scenario| scenario.yaw_rate_rad_s != [0.0; 2]);
-        Self { columns, contact_x_m, turns, bodies }
+        let mut struck_bodies: Vec<String> =
+            scenarios().map(|s| s.struck_body.clone().unwrap_or_default()).collect();
+        struck_bodies.sort();
+        struck_bodies.dedup();
+        struck_bodies.truncate(if struck_bodies.len() > 1 { struck_bodies.len() } else { 0 });
+        Self { columns, contact_x_m, turns, bodies, struck_bodies }
     }
 
     /// The row of a scenario: relative velocity of the contact points along X; the same across on a scale
     /// that is logarithmic for large values, since forces and impulses are powers of it; heading;
     /// logarithms of the masses; yaw rates, if any case has one; and, with all columns, the contact point
-    /// along the struck vehicle
-    /// and for each kind of body but the first a 1 if the striking vehicle is of this kind, else a
-    /// 0. For an unknown kind all of them have the same share.
+    /// along the struck vehicle and, for each kind of body of either vehicle but the first, a 1 if the
+    /// vehicle is of this kind, else a 0. For an unknown kind all of them have the same share.
     ///
     /// ```text
-    /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, r_t, r_b) (, x_c, body …)]
+    /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, r_t, r_b) (, x_c, b's body …, t's body …)]
     /// ```
     pub fn row(&self, scenario: &ForceScenario) -> Vec<f64> {
         let mut known = scenario.clone();
@@ -98,14 +105,9 @@ impl FeatureMap {
         }
         if self.columns == ColumnSet::ThetaContactAndBody {
             row.push(contact_m[0]);
-            let is_known = |body: &String| self.bodies.contains(body);
-            let body = scenario.striking_body.as_ref().filter(|body| is_known(body));
-            let share = 1.0 / self.bodies.len().max(1) as f64;
-            row.extend(self.bodies.iter().skip(1).map(|kind| match body {
-                Some(body) if body == kind => 1.0,
-                Some(_) => 0.0,
-                None => share,
-            }));
+            row.extend(shares(&self.bodies, scenario.striking_body.as_deref()));
+            let struck = scenario.struck_body.as_deref().unwrap_or_default();
+            row.extend(shares(&self.struck_bodies, Some(struck)));
         }
         row
     }
@@ -122,6 +124,17 @@ impl FeatureMap {
         row.extend([px.hypot(py).max(f64::MIN_POSITIVE).ln(), px.atan2(py)]);
         row
     }
+}
+
+/// For each kind but the first a 1 if it is that of the name, else a 0; the same share of all for a name
+/// that is none of them.
+fn shares(kinds: &[String], name: Option<&str>) -> impl Iterator<Item = f64> {
+    let idx = kinds.iter().position(|kind| Some(kind.as_str()) == name);
+    let share = 1.0 / kinds.len().max(1) as f64;
+    (1..kinds.len()).map(move |kind| match idx {
+        Some(idx) => f64::from(u8::from(idx == kind)),
+        None => share,
+    })
 }
 
 impl ColumnSet {
@@ -144,7 +157,12 @@ mod tests {
         let cases: Vec<&ForceCase> = cases.iter().collect();
         let [theta, all] = ColumnSet::ALL.map(|columns| FeatureMap::fit(&cases, columns));
         let known = example(StruckSide::Right);
-        let unknown = ForceScenario { contact_m: None, striking_body: None, ..known.clone() };
+        let unknown = ForceScenario {
+            contact_m: None,
+            striking_body: None,
+            struck_body: None,
+            ..known.clone()
+        };
         assert_eq!(theta.row(&known), theta.row(&unknown));
         assert_ne!(all.row(&known), all.row(&unknown));
         assert_eq!(all.row(&known)[5..], [-1.5, 0.0]);
