@@ -14,7 +14,7 @@ use impactlab_core::data::{
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-fn file(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+pub(crate) fn file(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
     let path = folder.join(name);
     fs::write(&path, content).unwrap();
     path
@@ -44,7 +44,7 @@ fn a_title_row_and_a_column_of_empty_remarks_do_not_hide_the_header() {
 }
 
 /// An archive with these parts.
-fn archive(parts: &[(&str, &str)]) -> Vec<u8> {
+pub(crate) fn archive(parts: &[(&str, &str)]) -> Vec<u8> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
     for (name, content) in parts {
@@ -274,72 +274,6 @@ fn what_a_workbook_says_of_its_size_takes_no_memory() {
     for rows in [row("2") + &row("1"), format!("<row r=\"1\">{0}{0}</row>", cell("A1"))] {
         let error = message(&rows, &few);
         assert!(error.contains("row 1 of sheet \"S\" has cells out of order"), "{error}");
-    }
-}
-
-#[test]
-fn what_is_recognised_but_not_read_is_said_by_its_name() {
-    let folder = tempfile::tempdir().unwrap();
-    for (name, content, message) in [
-        (
-            "nodfor",
-            &b" n o d a l   f o r c e   g r o u p    o u t p u t\n"[..],
-            "is an LS-DYNA nodfor file; export the force over time as CSV",
-        ),
-        (
-            "runT01",
-            b"runT01 FORMAT\nZZZZZEOR    1I   72C\n 3040\nrunT01 FORMAT\n",
-            "is a time history of Radioss as text; have it written in binary",
-        ),
-        ("in.k", b"*KEYWORD\n*TITLE\nrun\n", "is an LS-DYNA input deck; run it"),
-        ("d3plot", b"a run\0\0", "is LS-DYNA results (d3plot); export"),
-        (
-            "a.mat",
-            b"MATLAB 5.0 MAT-file, Platform: GLNXA64\0\0",
-            "is a MATLAB file; save the signals",
-        ),
-        ("a.h5", b"\x89HDF\r\n\x1a\n\0\0", "is an HDF5 file; export"),
-        ("a.pdf", b"%PDF-1.7\n%\xe2\xe3\xcf\xd3\n", "is a PDF document; take the table"),
-        ("a.png", b"\x89PNG\r\n\x1a\n\0\0", "is a picture (PNG); a curve has to be given"),
-        ("a.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF", "is a picture (JPEG); a curve"),
-        (
-            "a.xls",
-            b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1\0\0",
-            "is an old Office document (.xls); save the sheet as .xlsx",
-        ),
-        ("a.gz", b"\x1f\x8b\x08\0rest", "is a compressed file (gzip); unpack it"),
-        (
-            "a.html",
-            b"<!DOCTYPE html>\n<html><body>1</body></html>\n",
-            "is a web page; save the table as CSV",
-        ),
-        ("a.json", b"{\"time\": [0, 1]}\n", "is a JSON file; export"),
-        ("a.zip", &archive(&[("data.csv", "t,fx,fy\n")]), "is an archive (zip); unpack it"),
-        (
-            "a.ods",
-            &archive(&[
-                ("mimetype", "application/vnd.oasis.opendocument.spreadsheet"),
-                ("content.xml", "<x/>"),
-            ]),
-            "is an OpenDocument file (.ods); save the sheet as .xlsx",
-        ),
-        (
-            "a.xlsb",
-            &archive(&[("xl/workbook.bin", "")]),
-            "is a binary workbook (.xlsb); save it as .xlsx",
-        ),
-        (
-            "a.docx",
-            &archive(&[("word/document.xml", "<x/>")]),
-            "is a text document (.docx); save the table",
-        ),
-        ("b.xlsx", &archive(&[("xl/workbook.xml", "<workbook")]), "the workbook cannot be read"),
-    ] {
-        let path = file(folder.path(), name, content);
-        let error = read_any_series(&path, None).unwrap_err().to_string();
-        assert!(error.starts_with(&format!("{}: ", path.display())), "{error}");
-        assert!(error.contains(message), "{name}: {error}");
-        assert!(!error.contains("the header has") && !error.contains("is not text"), "{error}");
     }
 }
 

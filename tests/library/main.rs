@@ -11,6 +11,7 @@ mod data_bad_input;
 mod data_budgets;
 mod data_corrections;
 mod data_dialects;
+mod data_foreign;
 mod data_import;
 mod data_loggers;
 mod data_maps;

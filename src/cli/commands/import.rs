@@ -284,6 +284,9 @@ fn import_test(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError> 
         }
         Err(why) => notes.push(format!("no stiffness follows from this test: {why}")),
     }
+    if files.is_empty() {
+        notes.push("its channels can be read with a map: see what `check` says of it".to_owned());
+    }
     nothing_else(args, Imported { kind: "crash test", files, notes })
 }
 

@@ -15,6 +15,9 @@ const AS_NUMBERS: &str = "a motion has to be given as numbers, as CSV";
 const IN_SITE: &str = "name it in a site file as the ground of a scene, [dxf] file = \"…\"";
 const AS_WORKBOOK: &str = "save the sheet as .xlsx or as CSV";
 
+/// What is said of a text of LS-DYNA that no reader knows.
+const OF_LS_DYNA: &str = "a text of LS-DYNA that is not read, or one without numbers";
+
 /// The first bytes of formats that are not read: the bytes, what they are, and what to do.
 const MAGIC: [(&[u8], &str, &str); 26] = [
     (b"MATLAB 7.3", "a MATLAB file", "save the signals with writetable as CSV"),
@@ -94,7 +97,11 @@ pub(crate) fn refuse_known_text(path: &Path, text: &str) -> Result<(), DataError
     if let Some((_, format, remedy)) = known {
         return Err(other(path, format, remedy));
     }
-    match lines.by_ref().take(EXAMINED_LINES).find_map(solver_output) {
+    let examined: Vec<&str> = lines.by_ref().take(EXAMINED_LINES).collect();
+    let known = examined.iter().find_map(|line| solver_output(line));
+    let unknown =
+        || examined.iter().any(|line| is_of_ls_dyna(line)).then_some((OF_LS_DYNA, EXPORT));
+    match known.or_else(unknown) {
         Some((format, remedy)) => Err(other(path, format, remedy)),
         None => Ok(()),
     }
@@ -121,17 +128,23 @@ fn is_drawing<'a>(mut lines: impl Iterator<Item = &'a str>) -> bool {
 
 /// The output of a solver to which a line belongs, and what to do with it.
 fn solver_output(line: &str) -> Option<(&'static str, &'static str)> {
-    let line = line.to_lowercase();
-    let closed: String = line.chars().filter(|c| !c.is_whitespace()).collect();
+    let letters: String =
+        line.chars().filter(|c| c.is_alphabetic()).flat_map(char::to_lowercase).collect();
     let titles = [
         ("nodalforcegroupoutput", "an LS-DYNA nodfor file", EXPORT_FORCE),
-        ("rigidwallforces", "an LS-DYNA rwforc file", EXPORT_FORCE),
-        ("dtofcyclecontrolledby", "an LS-DYNA glstat file", EXPORT),
+        ("timewallnormalforcexforce", "an LS-DYNA rwforc file", EXPORT_FORCE),
+        ("dtofcycleiscontrolledby", "an LS-DYNA glstat file", EXPORT),
         ("zzzzzeor", "a time history of Radioss as text", "have it written in binary, as is usual"),
     ];
-    // The titles are written with blanks between the letters.
-    let title = titles.into_iter().find(|(title, ..)| closed.contains(title));
+    // Titles may be written with blanks between the letters, and with a number among them.
+    let title = titles.into_iter().find(|(title, ..)| letters.contains(title));
     title.map(|(_, format, remedy)| (format, remedy))
+}
+
+/// Whether a line is the one with version and date below the title of a run, in any text of LS-DYNA.
+fn is_of_ls_dyna(line: &str) -> bool {
+    let line = line.to_lowercase();
+    line.starts_with("ls-dyna") && line.contains(" date ")
 }
 
 /// The error for a file that is recognised and not read.

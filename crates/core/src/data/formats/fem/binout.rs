@@ -11,7 +11,7 @@
 //! ```
 //!
 //! The ids of rbdout stand in its metadata or in each state; bodies that are rigid for a while only are left out
-//! with the reason. Other folders are skipped. A state whose time is not later than that of one before it counts
+//! with the reason. A contact that has no sides has the id 0 and no numbers. Other folders are skipped. A state whose time is not later than that of one before it counts
 //! in its place, as after a restart.
 
 use std::collections::BTreeMap;
@@ -243,6 +243,12 @@ impl Table {
         if n_again > 0 {
             doubts.push(format!("{name}: {}", written_again(n_again)));
         }
+        let n_zeros = folder.leave_out_zeros(n_values(&kept, wanted));
+        if n_zeros > 0 {
+            doubts.push(format!(
+                "{name}: {n_zeros} ids are 0 and have no numbers; they are left out"
+            ));
+        }
         let ids: Vec<i64> = folder.ids.iter().map(|id| *id as i64).collect();
         if kept.is_empty() || ids.is_empty() {
             return Ok(None);
@@ -367,7 +373,32 @@ fn rows(
     states.iter_mut().map(row).collect::<Result<Vec<_>, _>>().map(Some)
 }
 
+/// How many values the first state has of the first array.
+fn n_values(states: &[State], arrays: &[&str]) -> usize {
+    let array = states.first().zip(arrays.first());
+    array.and_then(|(state, array)| state.arrays.get(*array)).map_or(0, Vec::len)
+}
+
 impl Folder {
+    /// Leaves out the ids that are 0, if the states have numbers of the others alone.
+    ///
+    /// - `n_values`: how many numbers a state has;
+    /// - returns how many ids were left out.
+    fn leave_out_zeros(&mut self, n_values: usize) -> usize {
+        let is_id: Vec<bool> = self.ids.iter().map(|id| *id != 0.0).collect();
+        let n_ids = is_id.iter().filter(|is_id| **is_id).count();
+        if n_ids == is_id.len() || n_ids != n_values {
+            return 0;
+        }
+        for of_ids in [&mut self.ids, &mut self.sides] {
+            if of_ids.len() == is_id.len() {
+                let mut is_id = is_id.iter();
+                of_ids.retain(|_| is_id.next() == Some(&true));
+            }
+        }
+        is_id.len() - n_ids
+    }
+
     /// The titles by id: letters of one length for each of them.
     fn titles(&self) -> BTreeMap<i64, String> {
         let ids = if self.legend_ids.is_empty() { &self.ids } else { &self.legend_ids };
@@ -378,5 +409,26 @@ impl Folder {
         let title = |letters: &[u8]| plain_title(&String::from_utf8_lossy(letters));
         let titles = self.legend.chunks_exact(length).map(title);
         ids.iter().map(|id| *id as i64).zip(titles).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_without_sides_has_no_numbers() {
+        let folder = || Folder {
+            ids: vec![3.0, 3.0, 0.0, 0.0, 8.0, 8.0],
+            sides: vec![0.0, 1.0, 0.0, 1.0, 1.0, 0.0],
+            ..Folder::default()
+        };
+        let mut without = folder();
+        assert_eq!(without.leave_out_zeros(4), 2);
+        assert_eq!(without.ids, [3.0, 3.0, 8.0, 8.0]);
+        assert_eq!(without.sides, [0.0, 1.0, 1.0, 0.0]);
+        let mut whole = folder();
+        assert_eq!(whole.leave_out_zeros(6), 0);
+        assert_eq!(whole.ids.len(), 6);
     }
 }

@@ -167,6 +167,9 @@ impl<'a> Chosen<'a> {
             What::Forces(parts) => {
                 let part = parts.first()?;
                 let n = results.histories.iter().filter(|of| of.kind == part.kind).count();
+                if n == 1 {
+                    return None;
+                }
                 let other = part.other_side.and_then(|at| results.histories.get(at));
                 let side = match other {
                     Some(other) => format!(
@@ -187,9 +190,7 @@ impl<'a> Chosen<'a> {
                         "which way the car heads at the start is not in the file; say it, e.g. map sheet={}",
                         named_along(of, Along::X)
                     ),
-                    _ => "name two nodes on the axis of the car, the rear one first, e.g. map sheet=node 101 to \
-                          node 102"
-                        .to_owned(),
+                    _ => axis_remedy(of, results),
                 };
                 let n = results.histories.len();
                 Some(format!(
@@ -292,6 +293,20 @@ impl<'a> Chosen<'a> {
             }
         }
         text + "\n"
+    }
+}
+
+/// How the yaw angle of a path of a node is had.
+fn axis_remedy(node: &History, results: &Results) -> String {
+    let is_other = |of: &&History| of.kind == node.kind && of.name != node.name;
+    match results.histories.iter().find(is_other) {
+        Some(other) => format!(
+            "name two nodes on the axis of the car, the rear one first, e.g. map sheet={} to {}",
+            node.name, other.name
+        ),
+        None => {
+            "it needs a second node on the axis of the car, which the file does not have".to_owned()
+        }
     }
 }
 

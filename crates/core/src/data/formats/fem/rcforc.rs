@@ -7,10 +7,15 @@
 //! ```
 //!
 //! The sides are called `SURFA` (slave) and `SURFB` (master) by newer versions. A number may touch its
-//! keyword. Older versions have no mass and no moments. The force is in the axes of the model; the
-//! moment is about their origin.
+//! keyword. Older versions have no mass and no moments; a row of a tied contact ends with
+//! `tied %10d  tied area %12.5E`. The force is in the axes of the model; the moment is about their origin.
+//!
+//! A contact of a single surface has no row, but in each state the line
+//! `interface number, %9d,is single surface-resultants are undefined`.
+//!
+//! Source: `l2a` of LSTC, which writes these texts from a `binout`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::data::formats::fem::legend::Legend;
@@ -20,6 +25,9 @@ use crate::data::formats::fem::tokens::{Token, tokens, whole_lines};
 
 /// The keywords of the numbers that are read.
 const NAMES: [&str; 4] = ["x", "y", "z", "mz"];
+
+/// Most contacts that are named in a sentence.
+const MOST_NAMED: usize = 6;
 
 /// A side of a contact, in the order in which sides are proposed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -70,9 +78,14 @@ pub(super) fn is_row(line: &str) -> bool {
 pub(super) fn read(text: &str) -> Result<Results, (u64, String)> {
     let mut states = States::<(i64, Side), 4>::default();
     let (mut legend, mut has_moments, mut n_other) = (Legend::default(), true, 0);
+    let mut single = BTreeSet::new();
     let (lines, cut) = whole_lines(text);
     for (number, line) in lines {
         if legend.takes(line) {
+            continue;
+        }
+        if let Some(id) = single_surface(line) {
+            single.insert(id);
             continue;
         }
         let Some(row) = row(line) else {
@@ -90,6 +103,7 @@ pub(super) fn read(text: &str) -> Result<Results, (u64, String)> {
     states.end();
     let mut doubts = states.doubts();
     doubts.extend(cut);
+    doubts.extend(without_force(&single));
     if n_other > 0 {
         doubts.push(format!("{n_other} lines among the states are not understood and left out"));
     }
@@ -113,6 +127,29 @@ fn histories(states: &States<(i64, Side), 4>, legend: &Legend, has_moments: bool
     states.rows.iter().map(history).collect()
 }
 
+/// The contact of which a line says that it is a single surface.
+fn single_surface(line: &str) -> Option<i64> {
+    let lower = line.trim().to_ascii_lowercase();
+    let rest = lower.strip_prefix("interface number")?;
+    rest.contains("single surface").then(|| tokens(rest).find_map(Token::whole))?
+}
+
+/// That the force of single surfaces is not in a file.
+fn without_force(contacts: &BTreeSet<i64>) -> Option<String> {
+    let ids: Vec<String> = contacts.iter().take(MOST_NAMED).map(i64::to_string).collect();
+    let more = match contacts.len().saturating_sub(ids.len()) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!ids.is_empty()).then(|| {
+        format!(
+            "contacts of a single surface, whose forces are not in the file: {}{more}; a force transducer in the \
+             model would write them",
+            ids.join(", ")
+        )
+    })
+}
+
 /// The row in a line; `None` for any other line.
 ///
 /// The error is what is wrong with a row, in words.
@@ -134,7 +171,12 @@ fn numbers<'a>(
         let Token::Word(name) = part else {
             return Err("has a number without a keyword".to_owned());
         };
-        let value = parts.next().and_then(Token::number).filter(|value| value.is_finite());
+        let mut value = parts.next();
+        // The area of a tied contact has a keyword of two words, `tied area`.
+        if name.eq_ignore_ascii_case("tied") && matches!(value, Some(Token::Word(_))) {
+            value = parts.next();
+        }
+        let value = value.and_then(Token::number).filter(|value| value.is_finite());
         let value =
             value.ok_or_else(|| format!("{name:.20} is not followed by a finite number"))?;
         let place = NAMES.iter().position(|of| name.eq_ignore_ascii_case(of));
@@ -179,6 +221,29 @@ mod tests {
         assert_eq!((slave.other_side, master.other_side), (Some(1), Some(0)));
         assert!(slave.values(MOMENT.0).is_empty());
         assert_eq!(*slave.time, [0.0, 1e-3]);
+    }
+
+    #[test]
+    fn tied_contacts_are_read_and_single_surfaces_named() {
+        let state = |time: &str, force: &str| {
+            format!(
+                "  slave           7 time {time}  x {force}  y  0.00000E+00  z  0.00000E+00 mass  0.00000E+00  mx  \
+                 0.00000E+00  my  0.00000E+00  mz  5.00000E+00  tied         12  tied area  3.45500E+02\n \
+                 interface number,         9,is single surface-resultants are undefined\n"
+            )
+        };
+        let text = state("0.00000E+00", " 0.00000E+00") + &state("1.00000E-03", "-1.20000E+05");
+        let results = read(&text).unwrap();
+        let [slave] = results.histories.as_slice() else { panic!("one side") };
+        assert_eq!(slave.values("fx"), [0.0, -1.2e5]);
+        assert_eq!(slave.values(MOMENT.0), [5.0, 5.0]);
+        let [said] = results.doubts.as_slice() else { panic!("{:?}", results.doubts) };
+        assert!(said.contains("not in the file: 9; a force transducer"), "{said}");
+        let bad = text.replacen("tied area  3.45500E+02", "tied area  nan", 1);
+        assert_eq!(
+            read(&bad).unwrap_err(),
+            (1, "tied is not followed by a finite number".to_owned())
+        );
     }
 
     #[test]
