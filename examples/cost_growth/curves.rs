@@ -228,6 +228,7 @@ fn frames(n: u64, _folder: &Path) -> Measured<Option<u64>> {
         scene: Arc::new(scene),
         courses: Vec::new(),
         is_placed: false,
+        seen_aspect: None,
         distance_m: None,
         follow: Follow::Nothing,
     };

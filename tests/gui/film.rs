@@ -53,6 +53,7 @@ fn film() -> Film {
         time_s: 0.0,
         camera: Camera { kind: ViewKind::Perspective, ..Camera::default() },
         is_placed: false,
+        seen_aspect: None,
         distance_m: None,
         follow: Follow::Struck,
     };

@@ -111,6 +111,7 @@ fn check_scene(
         time_s,
         camera: Camera { kind, ..Camera::default() },
         is_placed: false,
+        seen_aspect: None,
         distance_m: (kind == ViewKind::Perspective).then_some(14.0),
         follow: Follow::Struck,
     };
@@ -190,6 +191,7 @@ fn what_was_measured_is_in_the_picture() {
             time_s: 0.3,
             camera,
             is_placed: false,
+            seen_aspect: None,
             distance_m,
             follow,
         };

@@ -71,6 +71,7 @@ impl From<&SceneStill> for ScenePicture {
             time_s: still.time_s,
             camera: Camera { kind: still.view, ..Camera::default() },
             is_placed: false,
+            seen_aspect: None,
             distance_m: still.near_m,
             follow: still.near_m.map_or(Follow::Nothing, |_| Follow::Struck),
         }

@@ -94,6 +94,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         figure
     };
     let (placed, measured) = (session.scene.view.camera(), session.scene.measuring.clone());
+    let seen_aspect = session.scene.view.aspect();
     scene_heading_ui(
         ui,
         &scene,
@@ -107,6 +108,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 time_s,
                 camera: placed.unwrap_or(settings.camera),
                 is_placed: placed.is_some(),
+                seen_aspect,
                 distance_m: None,
                 follow: settings.follow,
             };

@@ -152,6 +152,7 @@ impl ShownScene {
             courses: self.courses,
             time_s: self.time_s,
             is_placed: false,
+            seen_aspect: None,
             distance_m: distance.or(follow.map(|_| FOLLOW_M)),
             follow: match follow {
                 None => Follow::Nothing,

@@ -98,7 +98,7 @@ impl FrameRenderer {
             let placed = places_camera.then(|| for_all_courses(picture, of_one));
             for ((view, scene), rect) in views.iter_mut().zip(picture.drawn()).zip(&rects) {
                 if let Some(placed) = &placed {
-                    view.place(placed);
+                    view.place(placed, rect.size());
                 }
                 let (mut camera, mut follow) = (picture.camera, picture.follow);
                 if let Some(key) = camera_in_scene(keys, scene, picture.time_s) {

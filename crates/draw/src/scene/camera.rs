@@ -100,6 +100,16 @@ impl Camera {
         camera.at_least_distance(places_m, aspect)
     }
 
+    /// The camera as far back that a picture holds the width of another one; what is looked at stays.
+    ///
+    /// - `seen`: width over height of the picture that the camera was placed for;
+    /// - `aspect`: likewise, of the picture that is to hold its width.
+    #[must_use]
+    pub fn holding_width(self, seen: f64, aspect: f64) -> Self {
+        let back = (seen / aspect.max(1e-3)).max(1.0);
+        Self { distance_m: self.distance_m * back, ..self }.limited()
+    }
+
     /// The camera at the least distance from which it sees the corners.
     fn at_least_distance(self, corners: &[[f64; 2]], aspect: f64) -> Self {
         let [mut near, mut far] = DISTANCES_M;
@@ -387,6 +397,21 @@ mod tests {
                 assert!(off < 1e-6 * camera.distance_m, "{camera:?} {pixel:?}: {again:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_picture_that_is_less_wide_holds_the_width_that_was_seen() {
+        let camera = Camera { kind: ViewKind::Above, distance_m: 40.0, ..Camera::default() };
+        let width_m = |camera: &Camera, size: [f64; 2]| {
+            let projection = Projection::new(camera, size);
+            let x_m = |px: f64| projection.ground_at([px, size[1] / 2.0]).unwrap()[0];
+            x_m(size[0]) - x_m(0.0)
+        };
+        let [seen, narrow, wide] = [[800.0, 200.0], [320.0, 180.0], [900.0, 100.0]];
+        let held = camera.holding_width(seen[0] / seen[1], narrow[0] / narrow[1]);
+        assert!((width_m(&held, narrow) - width_m(&camera, seen)).abs() < 1e-9, "{held:?}");
+        let as_wide = camera.holding_width(seen[0] / seen[1], wide[0] / wide[1]);
+        assert_eq!(as_wide.distance_m, camera.distance_m, "what is wider cuts nothing off");
     }
 
     #[test]

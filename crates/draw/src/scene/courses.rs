@@ -188,7 +188,7 @@ pub(crate) fn for_all_courses(picture: &ScenePicture, rect: Rect) -> ScenePictur
         return picture.clone();
     }
     let camera = picture.fitted_camera(rect.size());
-    ScenePicture { camera, is_placed: true, ..picture.clone() }
+    ScenePicture { camera, is_placed: true, seen_aspect: None, ..picture.clone() }
 }
 
 /// Draws the name of a course of events at its left top.

@@ -24,6 +24,9 @@ pub struct ScenePicture {
     pub camera: Camera,
     /// Whether the camera is taken as it is and not fitted.
     pub is_placed: bool,
+    /// Width over height of the view in which the camera was placed. A picture that is less wide is seen
+    /// from further back, so that nothing of the view is cut off; `None` leaves the camera where it is.
+    pub seen_aspect: Option<f64>,
     /// Distance of the camera that replaces the fitted one, m.
     pub distance_m: Option<f64>,
     /// Which car is in the middle.
@@ -48,16 +51,24 @@ impl ScenePicture {
         }
     }
 
-    /// The camera, from which all places of the scene are seen; as it is if it is placed.
+    /// The camera, from which all places of the scene are seen; that which was placed if there is one.
     ///
     /// - `size`: of the picture, or of one of its courses of events, in any unit.
     pub(crate) fn fitted_camera(&self, size: Vec2) -> Camera {
         if self.is_placed {
-            return self.camera;
+            return self.placed_camera(size);
         }
         let size = [size.x, size.y].map(f64::from);
         let fitted = self.camera.fitted(&self.scene.places_m(), size);
         Camera { distance_m: self.distance_m.unwrap_or(fitted.distance_m), ..fitted }
+    }
+
+    /// The camera that was placed, as far back that the picture holds the width of the view in which it was.
+    ///
+    /// - `size`: of the picture, or of one of its courses of events, in any unit.
+    pub(crate) fn placed_camera(&self, size: Vec2) -> Camera {
+        let aspect = f64::from(size.x / size.y.max(1.0));
+        self.seen_aspect.map_or(self.camera, |seen| self.camera.holding_width(seen, aspect))
     }
 
     /// What the picture shows.

@@ -142,9 +142,11 @@ impl SceneView {
     }
 
     /// Places the camera as a picture wants it.
-    pub(crate) fn place(&mut self, picture: &ScenePicture) {
+    ///
+    /// - `size`: of the picture, or of one of its courses of events, in any unit.
+    pub(crate) fn place(&mut self, picture: &ScenePicture, size: Vec2) {
         match (&mut self.camera, picture.distance_m) {
-            _ if picture.is_placed => self.camera = Some(picture.camera),
+            _ if picture.is_placed => self.camera = Some(picture.placed_camera(size)),
             (Some(camera), Some(distance_m)) => camera.distance_m = distance_m,
             // The size may still change.
             _ => self.camera = None,
@@ -165,6 +167,11 @@ impl SceneView {
         let [px, py, _] = projection.project([x, y, 0.0])?;
         let at = Vec2::new(px as f32, py as f32) / *points;
         (at.x.is_finite() && at.y.is_finite()).then(|| rect.min + at)
+    }
+
+    /// Width over height of the last picture; `None` before anything was drawn.
+    pub fn aspect(&self) -> Option<f64> {
+        self.seen.as_ref().map(|(rect, ..)| f64::from(rect.width() / rect.height().max(1.0)))
     }
 
     /// The camera of the last picture, if it was moved or fitted.

@@ -259,9 +259,9 @@ fn cars_ui(
         (Some(camera), _) => cars.courses_view.place_at(camera),
         (None, _) => {}
     }
-    let placed = match courses.as_slice() {
-        [] => cars.view.camera(),
-        _ => cars.courses_view.moved_camera(),
+    let (placed, seen_aspect) = match courses.as_slice() {
+        [] => (cars.view.camera(), cars.view.aspect()),
+        _ => (cars.courses_view.moved_camera(), None),
     };
     let pictured = |settings: &SceneSettings| ScenePicture {
         scene: Arc::clone(scene),
@@ -269,6 +269,7 @@ fn cars_ui(
         time_s,
         camera: placed.unwrap_or(settings.camera),
         is_placed: placed.is_some(),
+        seen_aspect,
         distance_m: None,
         follow: settings.follow,
     };
