@@ -413,7 +413,7 @@ mod tests {
             (
                 "speed_km_h = 54",
                 "speed_mph = 1e3",
-                "13:13: target.speed_mph is 1e3, expected -335.540444 to 335.540444 mph",
+                "13:13: target.speed_mph is 1e3, expected -335.5 to 335.5 mph",
             ),
             (
                 "cg_from_front_m = 2.35",

@@ -2,6 +2,9 @@
 
 use crate::units::{Quantity, Unit};
 
+/// Digits of a limit behind its first one, in a unit that is not SI.
+const LIMIT_DIGITS: f64 = 3.0;
+
 /// The values that a number may have, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
@@ -132,8 +135,9 @@ impl Range {
     ///
     /// - `unit`: the unit in which the number was given; it must measure the quantity of the range.
     pub fn expected(&self, unit: &Unit) -> String {
-        let [low, high] = [self.low, self.high].map(|si| number(unit.from_si(si)));
-        with_unit(&format!("{low} to {high}"), unit.symbol)
+        let low = inward(unit.from_si(self.low), f64::ceil);
+        let high = inward(unit.from_si(self.high), f64::floor);
+        with_unit(&format!("{} to {}", number(low), number(high)), unit.symbol)
     }
 
     /// The limits of the range in words, in SI units.
@@ -155,6 +159,18 @@ impl Range {
 
 fn with_unit(text: &str, unit: &str) -> String {
     if unit.is_empty() { text.to_owned() } else { format!("{text} {unit}") }
+}
+
+/// A limit with as many digits as a person reads; one that has more is moved into the range.
+fn inward(limit: f64, round: fn(f64) -> f64) -> f64 {
+    let digits = limit.abs().log10().floor();
+    if !digits.is_finite() {
+        return limit;
+    }
+    let unit = 10_f64.powf(digits - LIMIT_DIGITS);
+    let counted = limit / unit;
+    let whole = counted.round();
+    unit * if (counted - whole).abs() < 1e-6 { whole } else { round(counted) }
 }
 
 /// A number as a person reads it: without the digits that a conversion of units leaves, and with an
@@ -196,5 +212,7 @@ mod tests {
         assert_eq!(error, "draws is 0, expected 1 to 10000 (curves)");
         let km_h = Quantity::Speed.units().iter().find(|unit| unit.symbol == "km/h").unwrap();
         assert_eq!(SPEED.expected(km_h), "-540 to 540 km/h");
+        let mph = Quantity::Speed.units().iter().find(|unit| unit.symbol == "mph").unwrap();
+        assert_eq!(SPEED.expected(mph), "-335.5 to 335.5 mph", "335.540446 inside of the range");
     }
 }
