@@ -115,7 +115,7 @@ fn force_link(
         let impulse = motion.impulse_n_s.as_ref();
         let figure = impulse.map(|of| format.estimate_in_words(Quantity::Impulse, of));
         let model = motion.answer.report.force_model.clone().unwrap_or_default();
-        (figure, format!("force network {model}, 90 % of its draws"), Pane::ForcePrediction)
+        (figure, format!("force network {model}, interval of 90 %"), Pane::ForcePrediction)
     } else {
         let force = report.and_then(|report| report.force.as_ref());
         let size = force.map(|force| force.impulse_n_s[0].hypot(force.impulse_n_s[1]));

@@ -175,9 +175,9 @@ impl<M: TrainedModel> TrainingStatus<M> {
 
     /// Returns the share that is done, 0 to 1, and the remaining time: of the fits before the first
     /// epoch, then of the epochs at the pace of the latest ones, then of the fits after them; `None` for
-    /// both before the first fit or epoch and after the end.
+    /// both before the first fit or epoch, once it was cancelled, and after the end.
     pub fn progress(&self) -> (Option<f32>, Option<Duration>) {
-        match self.latest.as_ref().filter(|_| !self.is_over) {
+        match self.latest.as_ref().filter(|_| !self.is_over && !self.run.is_cancelled()) {
             None => (None, None),
             Some(report @ TrainingReport::Fit(_)) => {
                 let (left, at) = &self.fits_left;

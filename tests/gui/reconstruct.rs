@@ -92,6 +92,7 @@ fn the_question_what_happened_leads_to_a_form_for_what_was_found() {
     harness.run_steps(4);
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
     assert!(!state(&harness).session.shows_doors && state(&harness).evidence().is_none());
+    assert!(state(&harness).project.subject().is_none(), "nobody has entered a scenario");
     for label in ["Open an evidence file…", "Look at the example", "New evidence"] {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }

@@ -263,9 +263,12 @@ impl State {
         self.view.workspaces.show_pane(Pane::Scene);
     }
 
-    /// Begins a case with a reconstruction, and shows where its evidence comes from.
+    /// Begins a case with a reconstruction, and shows where its evidence comes from. It asks about no
+    /// scenario: one that nobody has entered would be computed, saved and reported beside the evidence.
     pub(in crate::app) fn begin_reconstruction(&mut self) {
-        self.new_case();
+        self.case = OpenCase::default();
+        let networks = self.project.networks.clone();
+        self.show_project(Project { networks, ..Project::default() });
         self.view.workspaces.show_pane(Pane::Evidence);
     }
 

@@ -147,8 +147,11 @@ fn dataset_ui(
         commands.push(Command::List(source.path.clone()));
     }
     source_menu(&response, source, commands);
+    let flagged = checked.flags.iter().filter(|flags| !flags.is_empty()).count();
+    if flagged == 0 && checked.vehicle.is_none() && dataset.problems.is_empty() {
+        return;
+    }
     ui.indent(&source.path, |ui| {
-        let flagged = checked.flags.iter().filter(|flags| !flags.is_empty()).count();
         if flagged > 0 {
             ui.weak(format!("{flagged} cases with flags"));
         }

@@ -33,7 +33,8 @@ const USUAL_PUSHING_S: f64 = 1.5;
 /// A small steer angle, rad: 3°.
 const SMALL_STEER_RAD: f64 = 0.0524;
 
-/// Draws the choices of an ending with their numbers. A vehicle for which nothing is chosen coasts.
+/// Draws the choices of an ending with their numbers. A vehicle for which nothing is chosen coasts; who takes
+/// a choice back says so.
 ///
 /// - `vehicle`: whose wheels they are.
 /// - `steering_ratio`: with one, steer angles are those of the steering wheel.
@@ -60,7 +61,7 @@ pub(super) fn ending_form(
             pit_fields(ui, &mut edited.pit, units);
         });
         if ending.clone().unwrap_or_default() != edited {
-            *ending = (!edited.is_coasting()).then_some(edited);
+            *ending = Some(edited);
         }
     });
 }
@@ -369,5 +370,22 @@ mod tests {
             assert_eq!(harness.state(), &Some(expected), "{typed:?}");
         }
         harness.get_by_role_and_label(Role::ComboBox, "to the side");
+    }
+
+    /// Who takes the brake back has said what the driver does, and is not asked any more.
+    #[test]
+    fn a_driver_who_brakes_no_more_coasts_and_is_not_open() {
+        let braking = Ending { brake: Some(hard_braking()), ..Ending::default() };
+        let mut harness = Harness::builder().with_size([600.0, 900.0]).build_ui_state(
+            |ui, ending: &mut Option<Ending>| {
+                ending_form(ui, "struck vehicle", ending, &mut None, UnitSystem::Si);
+            },
+            Some(braking),
+        );
+        harness.get_by_label("After the impact: the struck vehicle brakes").click();
+        harness.run();
+        harness.get_by_label("The driver brakes").click();
+        harness.run();
+        assert_eq!(harness.state(), &Some(Ending::default()));
     }
 }

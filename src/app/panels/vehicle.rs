@@ -52,11 +52,10 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 &SIMULATED_DURATION,
                 view.units,
             );
-            until_rest_ui(ui, project);
-            ui.end_row();
-            one_contact_ui(ui, project);
-            ui.end_row();
         });
+        // Below the grid, in which the question about the driver would stand beside the fields.
+        until_rest_ui(ui, project);
+        one_contact_ui(ui, project);
         for role in Role::ALL {
             sheet_ui(ui, role, project, view.units, commands);
         }

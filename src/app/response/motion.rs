@@ -76,9 +76,13 @@ impl Question for MotionQuestion {
     }
 }
 
-/// Median and interval of the sizes of the impulses of the predicted forces.
+/// Size of the impulse by the force network with its intervals, as the answer says it; where it does not, that
+/// of the drawn forces.
 fn impulse_n_s(answer: &PredictMotionAnswer) -> Option<Estimate> {
     answer.report.force_model.as_ref()?;
+    if let Some(impulses) = &answer.report.impulses {
+        return Some(impulses.network_impulse_n_s.clone());
+    }
     let impulses = answer.forecast.forces.iter().map(|force| {
         let [x, y] = force.impulse_n_s();
         x.hypot(y)

@@ -74,7 +74,9 @@ fn chip_text(caveat: &Caveat, units: UnitSystem) -> String {
     let label = caveat.kind.label();
     match caveat.quantity_in(&NumberFormat::english(units)) {
         Some(CaveatQuantity { name, unit, value, .. }) => {
-            format!("{label}: {name}{unit} {}", significant(value))
+            let is_count = unit.is_empty() && value.fract() == 0.0;
+            let value = if is_count { value.to_string() } else { significant(value) };
+            format!("{label}: {name}{unit} {value}")
         }
         None => label.to_owned(),
     }
@@ -94,6 +96,10 @@ mod tests {
         let text = |units| chip_text(&caveat, units);
         assert_eq!(text(UnitSystem::Si), "not at rest: speed at the end [km/h] 36.00");
         assert_eq!(text(UnitSystem::Us), "not at rest: speed at the end [mph] 22.37");
+        let caveat =
+            Caveat::new(CaveatKind::SeveralCourses, "").with_value("courses of events", 7.0);
+        let text = chip_text(&caveat, UnitSystem::Si);
+        assert_eq!(text, "several courses of events: courses of events 7");
     }
 
     #[test]

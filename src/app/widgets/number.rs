@@ -60,6 +60,13 @@ struct Refused {
     stays: Option<f64>,
 }
 
+/// What a field without a number said when its text was selected.
+#[derive(Debug, Clone)]
+struct Held {
+    text: String,
+    start: f64,
+}
+
 /// What has been typed in this frame.
 #[derive(Debug, Clone, PartialEq)]
 enum Typed {
@@ -67,6 +74,15 @@ enum Typed {
     Value(f64),
     Cleared,
     Refused { text: String, why: String },
+}
+
+impl Typed {
+    fn value(&self) -> Option<f64> {
+        match self {
+            Self::Value(value) => Some(*value),
+            Self::Nothing | Self::Cleared | Self::Refused { .. } => None,
+        }
+    }
 }
 
 impl Number<'_> {
@@ -112,12 +128,19 @@ pub(super) fn number_ui(
     let id = ui.next_auto_id().with("refused");
     let refused = ui.data(|data| data.get_temp::<Refused>(id));
     let refused = refused.filter(|refused| refused.stays == number.value);
-    let start = number.value.or(number.empty.map(|(_, start)| start)).unwrap_or_default();
+    // Another field may change what this one says while its text is selected: keys would leave the end of it.
+    let held_id = id.with("held");
+    let held = ui.data(|data| data.get_temp::<Held>(held_id));
+    let empty = match (&held, number.empty) {
+        (Some(Held { text, start }), Some(_)) => Some((text.as_str(), *start)),
+        (_, empty) => empty,
+    };
+    let start = number.value.or(empty.map(|(_, start)| start)).unwrap_or_default();
     let typed = RefCell::new(Typed::Nothing);
     // What the field says of its number, which is no other number when it is left as it was.
     let written = RefCell::new(String::new());
     let format = |value: f64, decimals: RangeInclusive<usize>| {
-        let text = match (&refused, number.value, number.empty) {
+        let text = match (&refused, number.value, empty) {
             (Some(refused), ..) if value == start => refused.text.clone(),
             (None, None, Some((text, _))) if value == start => text.to_owned(),
             _ => egui::emath::format_with_decimals_in_range(value, decimals),
@@ -130,10 +153,7 @@ pub(super) fn number_ui(
             return None;
         }
         let found = number.typed(text);
-        let value = match &found {
-            Typed::Value(value) => Some(*value),
-            Typed::Nothing | Typed::Cleared | Typed::Refused { .. } => None,
-        };
+        let value = found.value();
         typed.replace(found);
         value
     };
@@ -155,6 +175,13 @@ pub(super) fn number_ui(
         response.inner
     });
     let response = response.inner;
+    match empty {
+        Some((text, start)) if number.value.is_none() && response.has_focus() => {
+            let held = Held { text: text.to_owned(), start };
+            ui.data_mut(|data| data.insert_temp(held_id, held));
+        }
+        _ => ui.data_mut(|data| data.remove::<Held>(held_id)),
+    }
     let forget = |ui: &Ui| ui.data_mut(|data| data.remove::<Refused>(id));
     let edit = match typed.into_inner() {
         Typed::Refused { text, why } => {

@@ -317,6 +317,30 @@ mod tests {
         assert!(harness.query_by_label_contains("not possible").is_none());
     }
 
+    /// The end of the longer text stood behind what was typed.
+    #[test]
+    fn what_is_usual_may_change_while_a_field_is_selected() {
+        let mut harness = Harness::new_ui_state(
+            |ui, (mass_kg, usual_kg): &mut (Option<f64>, f64)| {
+                let text = format!("{usual_kg} (usual)");
+                let empty = EmptyField { text: &text, start_si: *usual_kg };
+                optional_quantity(ui, mass_kg, empty, &BODY_MASS, UnitSystem::Si);
+            },
+            (None, 1500.0),
+        );
+        harness.run();
+        harness.key_press(Key::Tab);
+        harness.run();
+        harness.state_mut().1 = 1860.25;
+        harness.run();
+        harness.event(Event::Text("1700".to_owned()));
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+        assert_eq!(harness.state().0, Some(1700.0));
+        assert!(harness.query_by_label_contains("not possible").is_none());
+    }
+
     #[test]
     fn a_seed_that_is_no_whole_number_is_kept_and_not_taken() {
         let mut harness = Harness::new_ui_state(

@@ -1,7 +1,7 @@
 //! What the evidence lacks: what a form or a file has left open although nothing can stand in for it.
 
 use crate::evidence::{
-    Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Word,
+    Bounds, Choice, Evidence, Field, Fields, Item, Items, PointsMut, Section, Sigma, Stated, Word,
 };
 
 /// What a single car lacks of which nobody says where it was.
@@ -36,6 +36,8 @@ pub(super) struct Lack {
     pub key: String,
     /// What a person calls it.
     pub label: &'static str,
+    /// Whether it could be left out, were its standard deviation not there.
+    pub is_optional: bool,
 }
 
 /// The first field that an item lacks.
@@ -55,6 +57,9 @@ impl Search {
             ("", None) => Some(format!(
                 "{title}: nothing has been entered: type what was found, or remove the card"
             )),
+            (_, Some(Lack { label, is_optional: true, .. })) => {
+                Some(format!("{title}: {label} has not been entered: type it, or empty its ±"))
+            }
             ("", Some(lack)) => {
                 Some(format!("{title}: {} has not been entered: type it", lack.label))
             }
@@ -109,7 +114,7 @@ struct Lacking(Option<Lack>);
 impl Lacking {
     fn note(&mut self, is_lacking: bool, key: &str, label: &'static str) {
         if is_lacking && self.0.is_none() {
-            self.0 = Some(Lack { key: key.to_owned(), label });
+            self.0 = Some(Lack { key: key.to_owned(), label, is_optional: false });
         }
     }
 }
@@ -117,6 +122,15 @@ impl Lacking {
 impl Fields for Lacking {
     fn number(&mut self, field: &Field, value: &mut Option<f64>) {
         self.note(field.is_required && value.is_none(), &field.si_key(), field.label);
+    }
+
+    fn measured(&mut self, field: &Field, _: &Sigma, stated: &mut Option<Stated>) {
+        let is_open = stated.is_none_or(|stated| stated.value.is_none());
+        let has_sigma = stated.is_some_and(|stated| stated.sigma.is_some());
+        if is_open && has_sigma && !field.is_required && self.0.is_none() {
+            self.0 = Some(Lack { key: field.si_key(), label: field.label, is_optional: true });
+        }
+        self.note(is_open && field.is_required, &field.si_key(), field.label);
     }
 
     fn points(&mut self, field: &Field, _: &Sigma, PointsMut { points_m, .. }: PointsMut<'_>) {
@@ -142,7 +156,7 @@ impl Fields for Lacking {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::{Edr, Mark, RestPose, Stated, VideoPosition};
+    use crate::evidence::{Edr, Mark, RestPose, VideoPosition};
 
     #[test]
     fn nothing_is_run_from_a_form_that_nobody_has_filled_in() {
@@ -158,6 +172,18 @@ mod tests {
         );
         let text = missing(|evidence| evidence.rest.as_mut().unwrap().y_m = Some(0.0));
         assert!(text.contains("damage of the struck car"), "{text}");
+        let heading = |value| Some(Stated { value, sigma: Some(0.03) });
+        let mut placed = evidence.clone();
+        placed.rest.as_mut().unwrap().heading_rad = heading(None);
+        let text = placed.missing().unwrap_or_default();
+        assert!(text.contains("at rest: heading has not been entered"), "{text}");
+        placed.rest.as_mut().unwrap().heading_rad = heading(Some(1.0));
+        let text = placed.missing().unwrap_or_default();
+        assert!(text.contains("damage of the struck car"), "{text}");
+        let mut missing = |change: fn(&mut Evidence)| {
+            change(&mut evidence);
+            evidence.missing().unwrap_or_default()
+        };
         let along = move |evidence: &mut Evidence| {
             evidence.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None })
         };

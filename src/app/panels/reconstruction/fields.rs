@@ -12,7 +12,7 @@ use impactlab_reconstruct::evidence::{
 };
 
 /// Width of a card below which the second number of a row stands in a row of its own, points.
-const NARROW: f32 = 290.0;
+const NARROW: f32 = 370.0;
 /// Width of a list of words, points.
 const LIST_WIDTH: f32 = 84.0;
 /// What an empty field says.

@@ -39,7 +39,8 @@ pub fn variant_differences(first: &Variant, other: &Variant, units: UnitSystem) 
     named_differences(&before, &now, opinion_words(wording.language))
 }
 
-/// Values that are other or more, and values that are missing, each once.
+/// Values that are other or more, and values that are missing, each once; a part of which several values stood
+/// there and none is left is named by itself.
 fn named_differences(before: &[&InputRow], now: &[&InputRow], words: &OpinionWords) -> Vec<String> {
     let mut named: Vec<String> = Vec::new();
     let mut add = |text: String| {
@@ -52,7 +53,11 @@ fn named_differences(before: &[&InputRow], now: &[&InputRow], words: &OpinionWor
     }
     let is_gone = |row: &&&InputRow| !now.iter().any(|other| key(other) == key(row));
     for row in before.iter().filter(is_gone) {
-        add(format!("{} {}", words.without, name(row)));
+        let is_like = |other: &&&InputRow| other.group == row.group;
+        let is_whole =
+            before.iter().filter(is_like).count() > 1 && !now.iter().any(|it| is_like(&it));
+        let what = if is_whole { inner(row).to_owned() } else { name(row) };
+        add(format!("{} {what}", words.without));
     }
     named
 }
@@ -74,8 +79,13 @@ fn key(row: &InputRow) -> (&str, &str) {
 
 /// The innermost thing that a value belongs to, and the value.
 fn name(row: &InputRow) -> String {
-    let inner = row.group.rsplit(", ").next().unwrap_or_default();
+    let inner = inner(row);
     if inner.is_empty() { row.label.clone() } else { format!("{inner}, {}", row.label) }
+}
+
+/// The innermost thing that a value belongs to; empty if there is none.
+fn inner(row: &InputRow) -> &str {
+    row.group.rsplit(", ").next().unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -104,6 +114,8 @@ mod tests {
         let text = differences(&[&first], &[&other], &wording);
         assert_eq!(text, "brake, mass: 1500 kg; brake, share: 0.8; without brake, side");
         assert_eq!(differences(&[&first], &[&first], &wording), "asked as the first variant");
+        let text = differences(&[&first], &[&Part::default()], &wording);
+        assert_eq!(text, "without brake", "what has no value left is named once");
     }
 
     /// A question about the same collision says nothing new; units are those that are asked for.
