@@ -51,7 +51,8 @@ pub fn form_ui(
         contact_ui(ui, numbers, view.units);
         let [striking, struck] = &bodies;
         body_ui(ui, "Striking body", &mut numbers.striking_body, striking);
-        if !struck.is_empty() {
+        // A body that the data name or a case asks for is seen, and can be taken back.
+        if !struck.is_empty() || numbers.struck_body.is_some() {
             body_ui(ui, "Struck body", &mut numbers.struck_body, struck);
         }
     });
@@ -68,7 +69,7 @@ pub fn form_ui(
         let open: Vec<&str> =
             open.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect();
         if !open.is_empty() {
-            ui.weak(format!("Averaged over what is unknown: {}.", open.join(" and ")));
+            ui.weak(format!("Averaged over what is unknown: {}.", open.join(", ")));
         }
     }
 }

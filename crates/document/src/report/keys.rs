@@ -83,7 +83,8 @@ impl Wording {
     /// A name in the language of the report. In other languages than English a name without a
     /// translation stays as it is, in quotation marks.
     pub fn key(&self, key: &str) -> String {
-        let words = bare(key);
+        // By itself the word is that of axes that turn with a vehicle.
+        let words = if key == "body" { "striking body".to_owned() } else { bare(key) };
         match self.language {
             Language::En => {
                 name_label(key).map_or_else(|| in_words_of_the_field(&words), str::to_owned)
@@ -103,6 +104,8 @@ impl Wording {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::{Paper, ReportDate, ReportSettings};
+    use impactlab_core::units::UnitSystem;
 
     #[test]
     fn the_longest_ending_decides() {
@@ -123,5 +126,18 @@ mod tests {
         }
         assert_eq!(bare("cg_to_front_axle_m"), "cg to front axle");
         assert_eq!(in_words_of_the_field(&bare("bullet_body")), "striking vehicle body");
+    }
+
+    #[test]
+    fn bodies_of_both_vehicles_are_named_in_both_languages() {
+        let named = |language| {
+            let date = ReportDate::new(2026, 1, 2).unwrap();
+            let (units, paper) = (UnitSystem::Si, Paper::A4);
+            let wording = Wording::new(&ReportSettings { language, units, paper, date });
+            ["body", "struck_body"].map(|key| wording.key(key))
+        };
+        assert_eq!(named(Language::En), ["striking body", "struck body"]);
+        let german = ["Aufbau des stoßenden Fahrzeugs", "Aufbau des gestoßenen Fahrzeugs"];
+        assert_eq!(named(Language::De), german);
     }
 }

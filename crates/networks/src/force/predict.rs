@@ -59,7 +59,7 @@ pub struct ForcePrediction {
     pub is_struck_body_open: bool,
 }
 
-/// A scenario with contact point and kind of body.
+/// A scenario with contact point and kinds of bodies.
 struct Variant {
     probability: f64,
     contact_m: [f64; 2],
@@ -81,8 +81,8 @@ impl ForceModel {
     /// Predicts the force of a scenario in any position. The network sees its canonical form, and the
     /// result is turned back.
     ///
-    /// Contact point and body that the scenario leaves open are taken from their distribution over the
-    /// training cases, and the result is the mixture over it.
+    /// Contact point and bodies that the scenario leaves open are taken from their distributions over the
+    /// training cases, each independently of the others, and the result is the mixture over them.
     ///
     /// # Errors
     /// [`ForceError::Scenario`] for a number out of range, [`ForceError::Impact`].
@@ -125,9 +125,8 @@ impl ForceModel {
             outside,
             caveats,
             is_contact_open: canonical.contact_m.is_none(),
-            is_body_open: self.body_idx(&canonical).is_none() && self.bodies().len() > 1,
-            is_struck_body_open: self.struck_body_idx(&canonical).is_none()
-                && !self.struck_bodies().is_empty(),
+            is_body_open: self.is_body_open(&canonical),
+            is_struck_body_open: self.is_struck_body_open(&canonical),
         })
     }
 
@@ -215,8 +214,8 @@ impl ForceModel {
         })
     }
 
-    /// What is left without the network, and whether the vehicles approach each other. The kind of
-    /// the striking vehicle's body plays no part in it.
+    /// What is left without the network, and whether the vehicles approach each other. The kinds of the
+    /// bodies play no part in it.
     fn predict_by_physics(
         &self,
         canonical: &ForceScenario,
@@ -264,6 +263,17 @@ impl ForceModel {
     fn struck_body_idx(&self, scenario: &ForceScenario) -> Option<usize> {
         let name = scenario.struck_body.as_ref()?;
         self.struck_bodies().iter().position(|known| known == name)
+    }
+
+    /// Whether a prediction draws the body of the striking vehicle: the model knows several kinds, and the
+    /// scenario names none of them.
+    pub fn is_body_open(&self, scenario: &ForceScenario) -> bool {
+        self.body_idx(scenario).is_none() && self.bodies().len() > 1
+    }
+
+    /// The same of the struck vehicle.
+    pub fn is_struck_body_open(&self, scenario: &ForceScenario) -> bool {
+        self.struck_body_idx(scenario).is_none() && !self.struck_bodies().is_empty()
     }
 
     /// What is said of bodies that the model does not know, if those that it has learned from have names.

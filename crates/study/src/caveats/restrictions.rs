@@ -424,6 +424,20 @@ pub(crate) fn trained_on_caveat(n_known: usize, n_test: usize) -> Option<Caveat>
     (n_known > 0).then(caveat)
 }
 
+/// Cases whose bodies the network that is judged by them draws.
+pub(crate) fn open_bodies_caveat(n_open: usize, n_test: usize) -> Option<Caveat> {
+    let caveat = || {
+        let text = Phrase::new(
+            "{0} of these {1} cases name no body that the force network knows: it is left open",
+            "{0} dieser {1} Fälle nennen keinen Aufbau, den das Kraftnetz kennt: Er bleibt offen",
+        )
+        .with(PhraseValue::Name(n_open.to_string()))
+        .with(PhraseValue::Name(n_test.to_string()));
+        Caveat::new(CaveatKind::OutsideDomain, text)
+    };
+    (n_open > 0).then(caveat)
+}
+
 /// That a network tells of a case from which it has learned.
 pub(crate) fn learned_case_caveat(kind: CaveatKind) -> Caveat {
     let text = Phrase::new(

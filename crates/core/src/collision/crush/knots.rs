@@ -20,9 +20,14 @@ const STRUCK_STRUCTURE_KNOTS_M: [f64; 15] =
 /// corner, beam in front of it) is given.
 const STRIKING_STRUCTURE_KNOTS_M: [f64; 10] =
     [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
-/// How many of the knots of depth, of the skins and of the structure of the struck vehicle laws had
-/// that do not store their knots.
-const N_KNOTS_BEFORE: [usize; 3] = [8, 8, 12];
+/// The knots of laws that do not store them: of depth, of the skins, and of the inner structures of the
+/// struck and the striking vehicle, m. They do not follow those of new laws.
+const DEPTH_KNOTS_BEFORE_M: [f64; 8] = [0.0, 0.03, 0.06, 0.09, 0.105, 0.13, 0.17, 0.24];
+const SKIN_KNOTS_BEFORE_M: [f64; 8] = [-0.66, -0.36, -0.16, 0.0, 0.16, 0.34, 0.64, 1.04];
+const STRUCK_STRUCTURE_KNOTS_BEFORE_M: [f64; 12] =
+    [-0.8, -0.6, -0.45, -0.32, -0.2, -0.1, 0.0, 0.1, 0.2, 0.32, 0.45, 0.6];
+const STRIKING_STRUCTURE_KNOTS_BEFORE_M: [f64; 10] =
+    [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
 
 /// Where the functions of a law that are piecewise linear have their knots. Values are linear in
 /// between and constant beyond the ends.
@@ -61,14 +66,12 @@ impl Default for CrushKnots {
 impl CrushKnots {
     /// Those of laws that were stored before laws named their knots.
     pub(super) fn before() -> Self {
-        let [n_depth, n_skin, n_structure] = N_KNOTS_BEFORE;
-        let first = |knots: &[f64], n: usize| knots.iter().take(n).copied().collect();
         Self {
-            depth_m: first(&DEPTH_KNOTS_M, n_depth),
-            skin_m: first(&SKIN_KNOTS_M, n_skin),
-            struck_structure_m: first(&STRUCK_STRUCTURE_KNOTS_M, n_structure),
+            depth_m: DEPTH_KNOTS_BEFORE_M.to_vec(),
+            skin_m: SKIN_KNOTS_BEFORE_M.to_vec(),
+            struck_structure_m: STRUCK_STRUCTURE_KNOTS_BEFORE_M.to_vec(),
+            striking_structure_m: STRIKING_STRUCTURE_KNOTS_BEFORE_M.to_vec(),
             side_and_front_m: OUTLINE_BEFORE_M,
-            ..Self::default()
         }
     }
 }

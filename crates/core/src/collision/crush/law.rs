@@ -55,8 +55,8 @@ pub struct StruckBodyCrush {
     pub friction: f64,
 }
 
-/// The parameters of the crush model: those that all kinds of bodies of the striking vehicle share,
-/// and those of each kind.
+/// The parameters of the crush model: those that all kinds of bodies share, those of each kind of body
+/// of the striking vehicle, and the corrections for each kind of body of the struck vehicle.
 ///
 /// While the overlap d of an element of the outline grows, the force per metre of outline at the
 /// position s along the side of the struck vehicle and σ along the striking vehicle is
@@ -218,7 +218,8 @@ pub(super) enum Applies {
 }
 
 /// Calls `visit` with each fitted parameter, in a fixed order, the scale over which it is expected to
-/// vary, and the collisions to which it applies. Order and scales are defined only here. `$reference` is `&` or `&mut`.
+/// vary, and the collisions to which it applies. Order and scales are defined only here. `$reference`
+/// is `&` or `&mut`.
 macro_rules! for_each_parameter {
     ($law:expr, $visit:expr, $($reference:tt)+) => {{
         let law = $law;
@@ -276,8 +277,8 @@ impl CrushLaw {
     /// - `bodies`: kinds of bodies of the striking vehicle, at least one, with the default knots.
     /// - `struck_bodies`: kinds of bodies of the struck vehicle, with the default knots; none where there
     ///   is one only.
-    /// - `rear_axle_and_end_x_m`: positions x of rear axle and rear end of the struck vehicle in its body
-    ///   axes, m.
+    /// - `[rear_axle_x_m, rear_end_x_m]`: positions x of rear axle and rear end of the struck vehicle in
+    ///   its body axes, m.
     pub fn prior(
         bodies: Vec<BodyCrush>,
         struck_bodies: Vec<StruckBodyCrush>,
@@ -341,8 +342,8 @@ impl CrushLaw {
         self.struck_bodies.iter().position(|body| body.name == name)
     }
 
-    /// All fitted parameters as a vector. The outlines of the bodies and the position of the rear
-    /// axle are not fitted.
+    /// All fitted parameters as a vector. The outlines of the bodies and the positions of the rear axle
+    /// and of the rear end are not fitted.
     pub fn to_vector(&self) -> Vec<f64> {
         let mut row = Vec::new();
         for_each_parameter!(self, |value: &f64, _: f64, _| row.push(*value), &);
@@ -436,5 +437,33 @@ mod tests {
         let lists = law.lists();
         assert!(lists.iter().all(|(_, values, knots)| values.len() == knots.len()), "{lists:?}");
         assert_eq!(lists.len(), 5 + 2 * 2 + 2 * 4);
+    }
+
+    /// A law of a model that was stored before laws named their knots and their rear end.
+    #[test]
+    fn a_law_without_knots_has_those_of_its_time() {
+        let knots = CrushKnots::before();
+        let body = BodyCrush::prior("A", Nose::default(), &knots);
+        let mut law = CrushLaw::prior(vec![body], Vec::new(), [-1.54, -2.5]);
+        law.depth_log_stiffness.truncate(8);
+        law.skin_log_factor.truncate(8);
+        law.skin_bulge_m.truncate(8);
+        law.struck_structure_depth_m.truncate(12);
+        let mut stored = serde_json::to_value(&law).unwrap();
+        let fields = stored.as_object_mut().unwrap();
+        assert!(fields.remove("knots").is_some() && fields.remove("rear_end_x_m").is_some());
+        assert!(!fields.contains_key("target_bodies"));
+        let read: CrushLaw = serde_json::from_value(stored).unwrap();
+        assert_eq!(read.rear_end_m(), -0.96);
+        assert!(read.struck_bodies.is_empty());
+        let lengths: Vec<usize> = read.lists().iter().map(|(_, _, knots)| knots.len()).collect();
+        assert_eq!(lengths, [8, 8, 8, 12, 10, 8, 10]);
+        assert!(read.lists().iter().all(|(_, values, knots)| values.len() == knots.len()));
+        let ends = |knots: &[f64]| [knots.first().copied(), knots.last().copied()];
+        assert_eq!(ends(&read.knots.depth_m), [Some(0.0), Some(0.24)]);
+        assert_eq!(ends(&read.knots.skin_m), [Some(-0.66), Some(1.04)]);
+        assert_eq!(ends(&read.knots.struck_structure_m), [Some(-0.8), Some(0.6)]);
+        assert_eq!(ends(&read.knots.striking_structure_m), [Some(-0.7), Some(0.54)]);
+        assert_eq!(read.knots.side_and_front_m, [0.8, 0.6]);
     }
 }

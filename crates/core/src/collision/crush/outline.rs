@@ -76,11 +76,12 @@ impl Nose {
     /// these points are linear in x₀, y₀ and R.
     ///
     /// - `contacts`: for each contact the angle of the wall, rad, and the point in body axes, m. Walls
-    ///   that are met by the front, beyond the end of the corner, say nothing of it and are left out.
+    ///   that are met by the front, beyond the end of the corner, or by the side say nothing of the corner
+    ///   and are left out.
     /// - returns `None` for fewer than two of the others, if the parameters are not determined by the
     ///   contacts, or if R or y₀ is not positive.
     pub fn fit(contacts: &[(f64, [f64; 2])]) -> Option<Self> {
-        let of_corner = |(angle, _): &&(f64, [f64; 2])| (0.0..=FRONT_SLOPE).contains(&angle.tan());
+        let of_corner = |(angle, _): &&(f64, [f64; 2])| (0.0..=FRONT_SLOPE.atan()).contains(angle);
         let contacts: Vec<_> = contacts.iter().filter(of_corner).collect();
         if contacts.len() < 2 {
             return None;
@@ -183,7 +184,9 @@ mod tests {
         assert_eq!(Nose::fit(&contacts[..1]), None);
         // A front that meets a flank at 80° touches it anywhere: of a corner it says nothing.
         let across = [(1.4, [2.1, 0.2]), (1.55, [2.2, -0.4])];
-        let all: Vec<_> = contacts.iter().copied().chain(across).collect();
+        // So does a car that comes the other way, although the tangent of its angle is that of a corner.
+        let oncoming = [(std::f64::consts::PI + 0.3, [-2.3, 0.6]), (-2.9, [-2.1, 0.8])];
+        let all: Vec<_> = contacts.iter().copied().chain(across).chain(oncoming).collect();
         assert_eq!(Nose::fit(&all), Nose::fit(&contacts));
     }
 

@@ -27,7 +27,8 @@ pub(super) const N_SCENARIO: usize = 6;
 pub(super) const N_TURNING: usize = 2;
 /// Number of features of the scenario's physics.
 const N_PHYSICS: usize = 6;
-/// Number of features of a scenario besides one for each kind of body and those of turning.
+/// Number of features of a scenario besides one for each kind of body of either vehicle and those of
+/// turning.
 pub(crate) const N_FEATURES: usize = N_SCENARIO + N_PHYSICS;
 /// Number of features of each instant.
 pub(crate) const N_INSTANT_FEATURES: usize = 6;
@@ -207,7 +208,7 @@ impl Standardisation {
     }
 }
 
-/// Distribution of contact point and kind of body over the training cases, for scenarios that leave
+/// Distributions of contact point and kinds of bodies over the training cases, for scenarios that leave
 /// them open.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

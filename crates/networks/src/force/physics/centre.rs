@@ -17,6 +17,8 @@ use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve
 
 /// Largest length of a side and width of a front, m.
 const LONGEST_OUTLINE_M: Expected = Expected::Magnitude(3.0);
+/// Largest distance of rear axle and rear end of the struck vehicle from its CG, m.
+const LONGEST_TAIL_M: Expected = Expected::Magnitude(50.0);
 /// Share of the peak below which a force does not count as contact.
 const CONTACT_SHARE: f64 = 0.01;
 
@@ -191,6 +193,14 @@ impl CentreModel {
                 check_length(&format!("{name}.{list}"), values.len(), knots.len())?;
                 let steps: Vec<f64> = knots.windows(2).map(|ends| ends[1] - ends[0]).collect();
                 check_numbers(&format!("{name}.knots"), &steps, Expected::Positive)?;
+            }
+            let first = law.knots.depth_m.first().copied().unwrap_or_default();
+            check_number(&format!("{name}.knots.depth_m[0]"), first, Expected::Magnitude(0.0))?;
+            check_number(&format!("{name}.rear_axle_x_m"), law.rear_axle_x_m, LONGEST_TAIL_M)?;
+            if let Some(rear_end_x_m) = law.rear_end_x_m {
+                check_number(&format!("{name}.rear_end_x_m"), rear_end_x_m, LONGEST_TAIL_M)?;
+                let overhang = format!("{name}.rear_axle_x_m - rear_end_x_m");
+                check_number(&overhang, law.rear_axle_x_m - rear_end_x_m, Expected::Positive)?;
             }
             let outline = format!("{name}.knots.outline_m");
             check_numbers(&outline, &law.knots.side_and_front_m, Expected::Positive)?;

@@ -214,6 +214,15 @@ impl Question for EvaluateForceRequest {
         };
         let n_trained_on = test.iter().filter(|case| model.is_trained_on(case)).count();
         let trained_on = restrictions::trained_on_caveat(n_trained_on, test.len()).into_iter();
+        let is_open = |case: &&ForceCase| {
+            model.is_body_open(&case.scenario) || model.is_struck_body_open(&case.scenario)
+        };
+        // Without these columns all bodies are open, as it was asked for.
+        let n_open = match self.columns {
+            ColumnSet::ThetaContactAndBody => test.iter().filter(is_open).count(),
+            ColumnSet::Theta => 0,
+        };
+        let open = restrictions::open_bodies_caveat(n_open, test.len());
         let report = EvaluateForceReport {
             model_file: self.model.to_string(),
             data: self.data.clone(),
@@ -225,7 +234,10 @@ impl Question for EvaluateForceRequest {
         };
         let report = Answer {
             report: ForceEvaluation::Cases(Box::new(report)),
-            caveats: trained_on.chain(restrictions::left_out_caveat(n_left_out, "cases")).collect(),
+            caveats: trained_on
+                .chain(restrictions::left_out_caveat(n_left_out, "cases"))
+                .chain(open)
+                .collect(),
             provenance,
         };
         Ok(Outcome::Complete(EvaluateForceAnswer { report, cases }))
