@@ -2,8 +2,8 @@
 
 use crate::units::{Quantity, Unit};
 
-/// Digits of a limit behind its first one, in a unit that is not SI.
-const LIMIT_DIGITS: f64 = 3.0;
+/// Digits of a limit behind its first one in messages.
+const LIMIT_DIGITS: i32 = 3;
 
 /// The values that a number may have, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,14 +163,16 @@ fn with_unit(text: &str, unit: &str) -> String {
 
 /// A limit with as many digits as a person reads; one that has more is moved into the range.
 fn inward(limit: f64, round: fn(f64) -> f64) -> f64 {
-    let digits = limit.abs().log10().floor();
-    if !digits.is_finite() {
+    let size = limit.abs().log10().floor();
+    if !size.is_finite() {
         return limit;
     }
-    let unit = 10_f64.powf(digits - LIMIT_DIGITS);
-    let counted = limit / unit;
+    // Powers of ten are exact where they are whole, so that 1e-4 stays 1e-4.
+    let (digits, power) = (LIMIT_DIGITS - size as i32, |digits: i32| 10_f64.powi(digits));
+    let counted = if digits >= 0 { limit * power(digits) } else { limit / power(-digits) };
     let whole = counted.round();
-    unit * if (counted - whole).abs() < 1e-6 { whole } else { round(counted) }
+    let whole = if (counted - whole).abs() < 1e-6 { whole } else { round(counted) };
+    if digits >= 0 { whole / power(digits) } else { whole * power(-digits) }
 }
 
 /// A number as a person reads it: without the digits that a conversion of units leaves, and with an
@@ -213,6 +215,11 @@ mod tests {
         let km_h = Quantity::Speed.units().iter().find(|unit| unit.symbol == "km/h").unwrap();
         assert_eq!(SPEED.expected(km_h), "-540 to 540 km/h");
         let mph = Quantity::Speed.units().iter().find(|unit| unit.symbol == "mph").unwrap();
-        assert_eq!(SPEED.expected(mph), "-335.5 to 335.5 mph", "335.540446 inside of the range");
+        assert_eq!(SPEED.expected(mph), "-335.5 to 335.5 mph", "335.540444 inside of the range");
+        for small in [1e-4, 2e-4, 1e-6, 1e-9] {
+            let range = Range::real("share", Quantity::Ratio, [small, 1.0], "of all");
+            let unit = &Quantity::Ratio.units()[0];
+            assert!(range.expected(unit).starts_with(&format!("{small:e} to 1")), "{small}");
+        }
     }
 }

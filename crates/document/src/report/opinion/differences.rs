@@ -54,8 +54,9 @@ fn named_differences(before: &[&InputRow], now: &[&InputRow], words: &OpinionWor
     let is_gone = |row: &&&InputRow| !now.iter().any(|other| key(other) == key(row));
     for row in before.iter().filter(is_gone) {
         let is_like = |other: &&&InputRow| other.group == row.group;
-        let is_whole =
-            before.iter().filter(is_like).count() > 1 && !now.iter().any(|it| is_like(&it));
+        let is_whole = !inner(row).is_empty()
+            && before.iter().filter(is_like).count() > 1
+            && !now.iter().any(|it| is_like(&it));
         let what = if is_whole { inner(row).to_owned() } else { name(row) };
         add(format!("{} {what}", words.without));
     }

@@ -390,6 +390,10 @@ impl Folder {
         if n_ids == is_id.len() || n_ids != n_values {
             return 0;
         }
+        if self.legend_ids.is_empty() {
+            // The titles belong to all ids.
+            self.legend_ids.clone_from(&self.ids);
+        }
         for of_ids in [&mut self.ids, &mut self.sides] {
             if of_ids.len() == is_id.len() {
                 let mut is_id = is_id.iter();
@@ -427,6 +431,10 @@ mod tests {
         assert_eq!(without.leave_out_zeros(4), 2);
         assert_eq!(without.ids, [3.0, 3.0, 8.0, 8.0]);
         assert_eq!(without.sides, [0.0, 1.0, 1.0, 0.0]);
+        let mut titled = Folder { legend: b"A A     B B ".to_vec(), ..folder() };
+        assert_eq!(titled.leave_out_zeros(4), 2);
+        let titles = titled.titles();
+        assert_eq!([&titles[&3], &titles[&8]], ["A", "B"]);
         let mut whole = folder();
         assert_eq!(whole.leave_out_zeros(6), 0);
         assert_eq!(whole.ids.len(), 6);
