@@ -34,7 +34,7 @@ pub(in crate::cli) struct PredictForceArgs {
     /// Kind of body of the striking vehicle, as the training data name it; left open if not given
     #[arg(long, value_name = "NAME")]
     body: Option<String>,
-    /// The same of the struck vehicle
+    /// Kind of body of the struck vehicle, likewise
     #[arg(long, value_name = "NAME")]
     struck_body: Option<String>,
     /// Leave the contact point open: it is drawn from that of the training cases

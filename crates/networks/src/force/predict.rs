@@ -55,7 +55,7 @@ pub struct ForcePrediction {
     /// Whether the striking vehicle's body was left open, or is none that the model knows, and was drawn
     /// from its distribution.
     pub is_body_open: bool,
-    /// The same of the struck vehicle's body.
+    /// Likewise of the struck vehicle's body.
     pub is_struck_body_open: bool,
 }
 
@@ -259,7 +259,7 @@ impl ForceModel {
         self.bodies().iter().position(|known| known == name)
     }
 
-    /// The same of the struck vehicle.
+    /// Likewise of the struck vehicle.
     fn struck_body_idx(&self, scenario: &ForceScenario) -> Option<usize> {
         let name = scenario.struck_body.as_ref()?;
         self.struck_bodies().iter().position(|known| known == name)
@@ -271,7 +271,7 @@ impl ForceModel {
         self.body_idx(scenario).is_none() && self.bodies().len() > 1
     }
 
-    /// The same of the struck vehicle.
+    /// Likewise of the struck vehicle.
     pub fn is_struck_body_open(&self, scenario: &ForceScenario) -> bool {
         self.struck_body_idx(scenario).is_none() && !self.struck_bodies().is_empty()
     }

@@ -410,32 +410,27 @@ pub(crate) fn left_out_caveat(n: usize, what: &str) -> Option<Caveat> {
 
 /// Cases that the network which they judge has learned from.
 pub(crate) fn trained_on_caveat(n_known: usize, n_test: usize) -> Option<Caveat> {
-    let caveat = || {
-        let text = Phrase::new(
-            "the model was trained on {0} of these {1} cases",
-            "Das Modell wurde mit {0} dieser {1} Fälle trainiert",
-        )
-        .with(PhraseValue::Name(n_known.to_string()))
-        .with(PhraseValue::Name(n_test.to_string()));
-        Caveat::new(CaveatKind::TrainedOn, text)
-            .with_value("cases that it was trained on", n_known as f64)
-            .with_range([0.0, 0.0])
-    };
-    (n_known > 0).then(caveat)
+    let text = Phrase::new(
+        "the model was trained on {0} of these {1} cases",
+        "Das Modell wurde mit {0} dieser {1} Fälle trainiert",
+    );
+    let caveat = of_cases(CaveatKind::TrainedOn, text, [n_known, n_test])?;
+    Some(caveat.with_value("cases that it was trained on", n_known as f64).with_range([0.0, 0.0]))
 }
 
 /// Cases whose bodies the network that is judged by them draws.
 pub(crate) fn open_bodies_caveat(n_open: usize, n_test: usize) -> Option<Caveat> {
-    let caveat = || {
-        let text = Phrase::new(
-            "{0} of these {1} cases name no body that the force network knows: it is left open",
-            "{0} dieser {1} Fälle nennen keinen Aufbau, den das Kraftnetz kennt: Er bleibt offen",
-        )
-        .with(PhraseValue::Name(n_open.to_string()))
-        .with(PhraseValue::Name(n_test.to_string()));
-        Caveat::new(CaveatKind::OutsideDomain, text)
-    };
-    (n_open > 0).then(caveat)
+    let text = Phrase::new(
+        "{0} of these {1} cases name no body that the force network knows: it is left open",
+        "{0} dieser {1} Fälle nennen keinen Aufbau, den das Kraftnetz kennt: Er bleibt offen",
+    );
+    of_cases(CaveatKind::OutsideDomain, text, [n_open, n_test])
+}
+
+/// What is said of some of all cases; none where there is none of them.
+fn of_cases(kind: CaveatKind, text: Phrase, [n, n_all]: [usize; 2]) -> Option<Caveat> {
+    let counted = |n: usize| PhraseValue::Name(n.to_string());
+    (n > 0).then(|| Caveat::new(kind, text.with(counted(n)).with(counted(n_all))))
 }
 
 /// That a network tells of a case from which it has learned.

@@ -35,7 +35,8 @@ pub struct PredictForceRequest {
     /// leaves it open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
-    /// The same of the struck vehicle.
+    /// Kind of body of the struck vehicle as the training data name it, where the collision leaves
+    /// it open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub struck_body: Option<String>,
     /// Whether the contact point is left open: it is drawn from that of the training cases.
@@ -111,7 +112,7 @@ pub struct PredictForceReport {
     pub is_contact_open: bool,
     /// Whether the striking vehicle's body is open and drawn from that of the training cases.
     pub is_body_open: bool,
-    /// The same of the struck vehicle's body.
+    /// Whether the struck vehicle's body is open and drawn from that of the training cases.
     pub is_struck_body_open: bool,
 }
 
