@@ -81,6 +81,23 @@ fn a_table_with_a_change_of_velocity_names_the_option_that_reads_it() {
 }
 
 #[test]
+fn what_a_check_finds_is_said_of_a_series_that_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = folder.path().join("log.csv");
+    let row = |i: u32| {
+        let x_m = if i == 30 { -9999.0 } else { 0.4 * f64::from(i) };
+        format!("{},{x_m},0\n", 0.02 * f64::from(i))
+    };
+    let rows: String = (0..100).map(row).collect();
+    fs::write(&log, format!("time [s],x [m],y [m]\n{rows}")).unwrap();
+    let out = folder.path().join("out");
+    let (notes, _) = said(&answer(&["import", text(&log), "--out", text(&out)]));
+    assert!(notes.contains("the position jumps by"), "{notes}");
+    let series = fs::read_to_string(out.join("series.csv")).unwrap();
+    assert!(series.contains("the position jumps by"), "{series}");
+}
+
+#[test]
 fn a_crash_test_gives_the_stiffness_of_its_front() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);

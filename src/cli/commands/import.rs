@@ -13,8 +13,9 @@ use crate::cli::options::{OverwriteArg, Words, one_of};
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::collision::{ChannelClass, filter_channel};
 use impactlab_core::data::{
-    ColumnMap, CrashTest, Existing, RecordedControls, RecorderRecord, parts_beside,
-    read_any_series, write_atomically, write_restricted_series_csv, write_restricted_table,
+    ColumnMap, CrashTest, Existing, RecordedControls, RecorderRecord, Severity, check_file,
+    parts_beside, read_any_series, write_atomically, write_restricted_series_csv,
+    write_restricted_table,
 };
 use impactlab_reconstruct::evidence::{Edr, Evidence};
 
@@ -327,7 +328,11 @@ fn import_series(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError
     let loaded = read_any_series(&args.file, args.map.as_ref())?;
     loaded.check_consistent(&args.file)?;
     let doubts = loaded.notes.iter().filter(|note| note.is_doubt()).map(ToString::to_string);
-    let doubts: Vec<String> = doubts.collect();
+    // What `check` says of the numbers is said of those that are written, too.
+    let flags = check_file(&loaded);
+    let flags = flags.iter().filter(|flag| flag.severity >= Severity::Warning);
+    let flags: Vec<String> = flags.map(ToString::to_string).collect();
+    let doubts: Vec<String> = doubts.chain(flags.iter().cloned()).collect();
     let restrictions = (!doubts.is_empty()).then(|| doubts.join("; "));
     write_restricted_series_csv(
         &staging.join("series.csv"),
@@ -335,6 +340,6 @@ fn import_series(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError
         &loaded.series,
         restrictions.as_deref(),
     )?;
-    let notes = loaded.notes.iter().map(ToString::to_string).collect();
+    let notes = loaded.notes.iter().map(ToString::to_string).chain(flags).collect();
     Ok(Imported { kind: "time series", files: vec![PathBuf::from("series.csv")], notes })
 }

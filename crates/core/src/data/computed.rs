@@ -3,8 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::data::columns::{ColumnUse, Term, column_use, stated_unit};
+use crate::data::error::quoted;
 use crate::data::spelling::letters_and_digits;
-use crate::data::{Channel, Formula, Note, Table};
+use crate::data::{Channel, DataError, Formula, Note, Table};
+use crate::units::Quantity;
 
 /// Headers of latitude and longitude.
 const LATITUDE: [&str; 3] = ["latitude", "lat", "gpslat"];
@@ -121,10 +123,74 @@ pub(super) fn note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Opt
     Some(Note::Places { origin_deg: [number(latitude)?, number(longitude)?] })
 }
 
+/// Refuses places whose latitude or longitude is no number of degrees to the north and to the east: one in another
+/// unit, or one that counts to the south or to the west by its header or by a letter in the next column.
+///
+/// # Errors
+/// [`DataError::Contradiction`].
+pub(super) fn check_places(
+    table: &Table,
+    columns: &BTreeMap<Channel, ColumnUse>,
+) -> Result<(), DataError> {
+    let is_place =
+        |column: &&ColumnUse| matches!(column.formula, Some(Formula::East | Formula::North));
+    let Some(place) = columns.values().find(is_place) else { return Ok(()) };
+    let letter = |row_idx: usize, idx: usize| table.cell(row_idx, idx).trim().to_lowercase();
+    for (term, [word, short]) in place.terms.iter().zip([["south", "s"], ["west", "w"]]) {
+        let Some(idx) = term.number.checked_sub(1) else { continue };
+        let Some(name) = table.header().get(idx) else { continue };
+        let stated = stated_unit(name, table.unit_text(idx), Quantity::Angle);
+        let is_other_unit = matches!(stated, Ok(Some(unit)) if unit.symbol != "deg");
+        let lower = name.to_lowercase();
+        let is_named = lower.contains(word) || lower.ends_with(&format!("({short})"));
+        let is_lettered = |row_idx: usize| letter(row_idx, idx + 1) == short;
+        let is_positive = |row_idx: usize| table.number(row_idx, idx).is_some_and(|of| of > 0.0);
+        let is_turned = |row_idx: usize| (is_named || is_lettered(row_idx)) && is_positive(row_idx);
+        if is_other_unit || (0..table.n_rows()).any(is_turned) {
+            let what = format!(
+                "column {} {} counts to the {word} or is not in degrees; latitudes are read in degrees to the north \
+                 and longitudes in degrees to the east: write them so, with a minus to the {word}",
+                idx + 1,
+                quoted(name)
+            );
+            return Err(DataError::Contradiction { path: table.path().to_owned(), what });
+        }
+    }
+    Ok(())
+}
+
 /// Whether a formula gives this channel.
 pub(super) fn is_of(formula: Formula, channel: Channel) -> bool {
     match formula {
         Formula::Quaternion => channel == Channel::Yaw,
         Formula::East | Formula::North => matches!(channel, Channel::X | Channel::Y),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::data::read_any_series;
+
+    #[test]
+    fn places_to_the_west_without_a_minus_and_radians_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let read = |header: &str, side: &str, longitude: &str| {
+            let row = |at: u32| format!("{at},40.0,{longitude}{at},{side}\n");
+            let text = format!("time [s],{header},side\n{}{}{}", row(0), row(1), row(2));
+            std::fs::write(&path, text).unwrap();
+            read_any_series(&path, None).map_err(|error| error.to_string())
+        };
+        assert!(read("latitude,longitude", "E", "83.000").is_ok());
+        assert!(read("latitude,longitude", "W", "-83.000").is_ok());
+        assert!(read("latitude [deg],longitude [deg]", "x", "-83.000").is_ok());
+        for (header, side) in [
+            ("latitude,longitude", "W"),
+            ("latitude,longitude (W)", "x"),
+            ("latitude [rad],longitude [rad]", "x"),
+        ] {
+            let error = read(header, side, "0.000").unwrap_err();
+            assert!(error.contains("degrees to the east"), "{header}, {side}: {error}");
+        }
     }
 }

@@ -175,18 +175,20 @@ fn at_the_start(series: &TimeSeries) -> Option<Contradiction> {
     (is_off && is_compass).then_some(Contradiction::Compass)
 }
 
-/// A yaw that turns with the path, but by 57.3 times as much: degrees that were read as radians. No vehicle
-/// spins so often while its path turns by so much.
+/// A yaw that turns with the path, but by 57.3 times as much or as little: degrees that were read as radians, or the
+/// other way round. No vehicle spins so often while its path turns by so much, or keeps to its path in such a way.
 fn yaw_unit(course_rad: &[f64], pairs: &[(f64, f64)], course_turn: f64) -> Option<Contradiction> {
     let reach = RELATION_RAD.min(UNIT_SHARE_OF_TURN * course_turn);
-    let off = |(course, (_, yaw)): (&f64, &(f64, f64))| course - yaw.to_radians();
-    let off: Vec<f64> = course_rad.iter().zip(pairs).map(off).collect();
-    let mean = off.iter().sum::<f64>() / off.len() as f64;
-    let is_along =
-        course_turn > LEAST_UNIT_TURN_RAD && off.iter().all(|off| (off - mean).abs() < reach);
-    let factor = 1.0_f64.to_degrees();
-    (is_along && wrap_angle_rad(mean).abs() < 2.0 * RELATION_RAD)
-        .then_some(Contradiction::YawUnit { factor })
+    let is_factor = |factor: &f64| {
+        let off = |(course, (_, yaw)): (&f64, &(f64, f64))| course - yaw / factor;
+        let off: Vec<f64> = course_rad.iter().zip(pairs).map(off).collect();
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        let is_along =
+            course_turn > LEAST_UNIT_TURN_RAD && off.iter().all(|off| (off - mean).abs() < reach);
+        is_along && wrap_angle_rad(mean).abs() < 2.0 * RELATION_RAD
+    };
+    let factor = [1.0_f64.to_degrees(), 1.0_f64.to_radians()].into_iter().find(is_factor)?;
+    Some(Contradiction::YawUnit { factor })
 }
 
 /// Positions of which each stands in several rows at speed. Those of a coarse resolution do too, but go on by
@@ -264,10 +266,15 @@ impl fmt::Display for Contradiction {
             Self::Mirrored { .. } => {
                 write!(f, "the path turns to one side where the yaw angle turns to the other")
             }
-            Self::YawUnit { factor } => write!(
+            Self::YawUnit { factor } if factor > 1.0 => write!(
                 f,
                 "the yaw angle turns by {factor:.1} times what the path does, as if degrees were read as \
                  radians"
+            ),
+            Self::YawUnit { factor } => write!(
+                f,
+                "the yaw angle turns by {factor:.4} times what the path does, as if radians were read as \
+                 degrees"
             ),
             Self::Held { rows } => write!(
                 f,
@@ -338,6 +345,13 @@ mod tests {
             _ => value,
         }));
         assert!(matches!(degrees[..], [Contradiction::YawUnit { .. }]), "{degrees:?}");
+        let radians = contradictions(&bend(|channel, value| match channel {
+            Channel::Yaw | Channel::YawRate => value.to_radians(),
+            _ => value,
+        }));
+        let [Contradiction::YawUnit { factor }] = radians[..] else { panic!("{radians:?}") };
+        assert!((factor * 57.295_78 - 1.0).abs() < 1e-6, "{factor}");
+        assert!(radians[0].to_string().contains("radians were read as degrees"), "{}", radians[0]);
     }
 
     /// 3.4° that are read as radians would be half a spin on a nearly straight path.

@@ -181,11 +181,12 @@ impl Reading<'_> {
         use Channel::{Vx, Vy, X, Y, Yaw, YawRate};
         let mirrored_yaw =
             || vec![vec![Edit::Mirror(Yaw)], vec![Edit::Mirror(Yaw), Edit::Mirror(YawRate)]];
-        let degrees = || {
-            let yaw = Edit::Unit(Yaw, unit(Quantity::Angle, "deg"));
-            let rate = Edit::Unit(YawRate, unit(Quantity::AngularVelocity, "deg/s"));
+        let angles = |of_yaw: &str, of_rate: &str| {
+            let yaw = Edit::Unit(Yaw, unit(Quantity::Angle, of_yaw));
+            let rate = Edit::Unit(YawRate, unit(Quantity::AngularVelocity, of_rate));
             vec![vec![yaw], vec![yaw, rate]]
         };
+        let degrees = || angles("deg", "deg/s");
         let mirrored_place = |axis, velocity| {
             let place = Edit::Mirror(axis);
             vec![vec![place], vec![place, Edit::Mirror(velocity)]]
@@ -195,6 +196,7 @@ impl Reading<'_> {
                 Contradiction::Compass => vec![vec![vec![Edit::Headings]]],
                 Contradiction::Mirrored { axis: X } => vec![mirrored_place(X, Vx)],
                 Contradiction::Mirrored { .. } => vec![mirrored_place(Y, Vy), mirrored_yaw()],
+                Contradiction::YawUnit { factor } if factor < 1.0 => vec![angles("rad", "rad/s")],
                 Contradiction::YawUnit { .. } => vec![degrees()],
                 Contradiction::YawRate { factor } => self.yaw_rate_candidates(factor),
                 Contradiction::YawRateUnrelated | Contradiction::Held { .. } => Vec::new(),

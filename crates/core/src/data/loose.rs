@@ -278,6 +278,7 @@ fn load_columns(
         return Err(DataError::TooFewRows { path: path(), line, expected, got });
     }
     check_numbers(table, &columns, map)?;
+    computed::check_places(table, &columns.by_channel)?;
     let settings = map.map(|map| (*map.settings).clone()).unwrap_or_default();
     if let Some(time) = columns.by_channel.get(&Channel::Time) {
         clock::check_unit(table, time, map)?;

@@ -61,13 +61,15 @@ impl Window {
     }
 }
 
-/// Compares the speed of a motion with its path: the column of the speed, or the size of v_x and v_y where
+/// Compares the speed of a motion with its path: the column of the speed, the size of v_x and v_y where
 /// the motion has no such column and its yaw angle, by which
-/// [`velocity_fit`](crate::data::velocity_fit()) would compare them, is missing.
+/// [`velocity_fit`](crate::data::velocity_fit()) would compare them, is missing, or v_x alone with the way along the
+/// yaw angle.
 ///
 /// - returns `None` if they agree, if there is nothing to compare or if the path is too short.
 pub fn path_speed(series: &TimeSeries) -> Option<PathSpeed> {
-    let windows = windows(series, &recorded_m_s(series)?)?;
+    let Some(recorded_m_s) = recorded_m_s(series) else { return forward_speed(series) };
+    let windows = windows(series, &recorded_m_s)?;
     let all_m = way_m(&windows);
     if all_m < SHORTEST_PATH_M || windows.len() < LEAST_FOR_WHOLE {
         return None;
@@ -118,6 +120,39 @@ fn recorded_m_s(series: &TimeSeries) -> Option<Vec<f64>> {
     let is_compared = series.get(Channel::Yaw).is_some();
     let (vx, vy) = (series.get(Channel::Vx)?, series.get(Channel::Vy)?);
     (!is_compared).then(|| vx.iter().zip(vy).map(|(x, y)| x.hypot(*y)).collect())
+}
+
+/// Compares v_x without a v_y with the way along the heading, as a whole: neither a car that slides nor a place beside
+/// its CG makes it so much longer or shorter. Nothing is found where heading and path contradict each other.
+fn forward_speed(series: &TimeSeries) -> Option<PathSpeed> {
+    let get = |channel| series.get(channel);
+    if get(Channel::Vy).is_some() {
+        return None;
+    }
+    let ([x, y], [vx, yaw_rad]) =
+        ([get(Channel::X)?, get(Channel::Y)?], [get(Channel::Vx)?, get(Channel::Yaw)?]);
+    let time_s = series.time_s();
+    let step = |to: usize| {
+        let (sin, cos) = ((yaw_rad[to - 1] + yaw_rad[to]) / 2.0).sin_cos();
+        let way_m = cos * (x[to] - x[to - 1]) + sin * (y[to] - y[to - 1]);
+        let speed_m_s = (vx[to - 1] + vx[to]) / 2.0;
+        (to, time_s[to] - time_s[to - 1], way_m, speed_m_s)
+    };
+    let steps: Vec<(usize, f64, f64, f64)> = (1..time_s.len()).map(step).collect();
+    let path_m: f64 = steps.iter().map(|(_, _, way_m, _)| way_m).sum::<f64>().abs();
+    let recorded_m = steps.iter().map(|(_, step_s, _, speed)| step_s * speed).sum::<f64>().abs();
+    let (to, step_s, way_m, speed_m_s) =
+        steps.iter().copied().max_by(|a, b| a.3.abs().total_cmp(&b.3.abs()))?;
+    let is_compared = path_m > SHORTEST_PATH_M && steps.len() >= LEAST_WINDOWS;
+    let is_off = is_compared && is_other_length(recorded_m / path_m);
+    (is_off && contradictions(series).is_empty()).then(|| PathSpeed {
+        ratio: recorded_m / path_m,
+        is_whole: true,
+        sample_idx: to - 1,
+        time_s: time_s[to - 1],
+        recorded_m_s: speed_m_s.abs(),
+        path_m_s: way_m.abs() / step_s,
+    })
 }
 
 /// Positions that are held between fixes go on by steps, which is another fault.
@@ -190,9 +225,10 @@ fn corrections(found: &PathSpeed, columns: &BTreeMap<Channel, ColumnUse>) -> Vec
     if !found.is_whole {
         return Vec::new();
     }
-    let (speed, name) = match columns.contains_key(&Speed) {
-        true => (&[Speed][..], "The speed is"),
-        false => (&[Vx, Vy][..], "v_x and v_y are"),
+    let (speed, name) = match (columns.contains_key(&Speed), columns.contains_key(&Vy)) {
+        (true, _) => (&[Speed][..], "The speed is"),
+        (false, true) => (&[Vx, Vy][..], "v_x and v_y are"),
+        (false, false) => (&[Vx][..], "v_x is"),
     };
     let tries = [
         (speed, name, 1.0 / found.ratio),
@@ -335,5 +371,28 @@ mod tests {
         components.insert(Channel::Vx, vec![9.0 * 3.6; n]).unwrap();
         components.insert(Channel::Vy, vec![12.0 * 3.6; n]).unwrap();
         assert!(path_speed(&components).unwrap().is_whole);
+    }
+
+    /// A log of a receiver has the course for the heading and the speed along it.
+    #[test]
+    fn a_speed_along_the_heading_alone_is_compared_as_a_whole() {
+        let motion = |speed_m_s: f64, yaw: &dyn Fn(f64) -> f64| {
+            let series = bend(|_| 15.0);
+            let mut of = TimeSeries::new(series.time_s().to_vec()).unwrap();
+            let n = series.n_samples();
+            for channel in [Channel::X, Channel::Y] {
+                of.insert(channel, series.get(channel).unwrap().to_vec()).unwrap();
+            }
+            let angles = series.time_s().iter().map(|t| yaw(*t)).collect();
+            of.insert(Channel::Yaw, angles).unwrap();
+            of.insert(Channel::Vx, vec![speed_m_s; n]).unwrap();
+            path_speed(&of)
+        };
+        assert_eq!(motion(15.0, &|t| 0.3 * t), None);
+        let found = motion(54.0, &|t| 0.3 * t).expect("another unit");
+        assert!(found.is_whole && (found.ratio - 3.6).abs() < 0.05, "{found:?}");
+        assert!(found.to_string().ends_with("as if km/h were read as m/s"), "{found}");
+        // A compass heading is another fault, by which nothing can be said of the speed.
+        assert_eq!(motion(54.0, &|t| std::f64::consts::FRAC_PI_2 - 0.3 * t), None);
     }
 }

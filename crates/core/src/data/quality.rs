@@ -90,6 +90,8 @@ pub enum FlagKind {
     PathJump,
     /// Largest speed along a path, m/s, which is that of no collision.
     SlowPath,
+    /// Mean speed along a path, m/s, which no vehicle has.
+    FastPath,
     /// Turn of a vehicle from one row to the next, rad, which may as well be one to the other side.
     YawStep,
     /// A corner of the striking vehicle stays hooked to the struck vehicle, as the table of cases
@@ -115,6 +117,7 @@ impl FlagKind {
             Self::BegunBefore => "begun",
             Self::PathJump => "jump",
             Self::SlowPath => "slow",
+            Self::FastPath => "fast",
             Self::YawStep => "turn?",
             Self::Hooked => "hooked",
         }

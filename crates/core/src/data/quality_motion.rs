@@ -1,5 +1,5 @@
 //! Checks of the path of a single file: places that no vehicle reaches from one row to the next, and a path along
-//! which none would take so long.
+//! which none would take so long, or so short a time.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ pub(super) fn check_path(series: &TimeSeries) -> Vec<Flag> {
     };
     let places: Vec<(f64, [f64; 2])> =
         series.time_s().iter().zip(x.iter().zip(y)).map(|(t, (x, y))| (*t, [*x, *y])).collect();
-    jump(&places).or_else(|| slow(&places)).into_iter().collect()
+    jump(&places).or_else(|| of_parts(&places)).into_iter().collect()
 }
 
 /// Checks the yaw angle of a motion without a yaw rate; what is between two rows at rest is noise of a course.
@@ -61,23 +61,26 @@ fn jump(places: &[(f64, [f64; 2])]) -> Option<Flag> {
     Some(Flag { kind, severity, value, limit: JUMP_M, time_s: Some(time_s) })
 }
 
-/// The largest speed over a part of a path that is nowhere faster than a car is pushed by hand.
-fn slow(places: &[(f64, [f64; 2])]) -> Option<Flag> {
+/// The largest speed over a part of a path, if the path is nowhere faster than a car is pushed by hand, or faster than
+/// any vehicle by a few metres a row.
+fn of_parts(places: &[(f64, [f64; 2])]) -> Option<Flag> {
     let n_steps = places.len().checked_sub(1).filter(|n| *n > 0)?;
     let n_parts = N_PARTS.min(n_steps);
     let ends: Vec<(f64, [f64; 2])> =
         (0..=n_parts).filter_map(|i| places.get(i * n_steps / n_parts)).copied().collect();
     let parts = || ends.iter().zip(ends.iter().skip(1)).map(|(a, b)| step(*a, *b));
-    let way_m: f64 = parts().map(|(_, way_m)| way_m).sum();
+    let (duration_s, way_m) = parts().fold((0.0, 0.0), |sum, of| (sum.0 + of.0, sum.1 + of.1));
     let fastest_m_s = parts().map(|(duration_s, way_m)| way_m / duration_s).fold(0.0, f64::max);
-    let (kind, severity) = (FlagKind::SlowPath, Severity::Warning);
-    (way_m > SLOW_PATH_M && fastest_m_s < SLOW_M_S).then_some(Flag {
-        kind,
-        severity,
-        value: fastest_m_s,
-        limit: SLOW_M_S,
-        time_s: None,
-    })
+    let severity = Severity::Warning;
+    let flag = |kind, value, limit| Some(Flag { kind, severity, value, limit, time_s: None });
+    match () {
+        () if way_m <= SLOW_PATH_M => None,
+        () if fastest_m_s < SLOW_M_S => flag(FlagKind::SlowPath, fastest_m_s, SLOW_M_S),
+        () if way_m > SPEED.high * duration_s => {
+            flag(FlagKind::FastPath, way_m / duration_s, SPEED.high)
+        }
+        () => None,
+    }
 }
 
 #[cfg(test)]
@@ -102,6 +105,9 @@ mod tests {
         assert_eq!(drive(|t| t, no_fix), [FlagKind::PathJump]);
         assert_eq!(drive(|t| t, |_, x| 1e3 * x), [FlagKind::PathJump]);
         assert_eq!(drive(|t| 1e3 * t, |_, x| x), [FlagKind::SlowPath]);
+        // Seconds that are read as milliseconds, and the days of a spreadsheet as seconds.
+        assert_eq!(drive(|t| 1e-3 * t, |_, x| x), [FlagKind::FastPath]);
+        assert_eq!(drive(|t| 46_351.0 + t / 86_400.0, |_, x| x), [FlagKind::FastPath]);
     }
 
     /// A spin of 458 deg/s, recorded within one turn.

@@ -61,7 +61,9 @@ impl Flag {
             | FlagKind::NotSeparated
             | FlagKind::BegunBefore
             | FlagKind::Hooked => self.finding_of_force(),
-            FlagKind::PathJump | FlagKind::SlowPath | FlagKind::YawStep => self.finding_of_path(),
+            FlagKind::PathJump | FlagKind::SlowPath | FlagKind::FastPath | FlagKind::YawStep => {
+                self.finding_of_path()
+            }
         }
     }
 
@@ -81,6 +83,11 @@ impl Flag {
                  andersherum gedreht haben: öfter aufzeichnen oder die Gierrate dazu",
             )
             .with(PhraseValue::fixed(Quantity::Angle, self.value, 0)),
+            FlagKind::FastPath => Phrase::new(
+                "the path goes on at {0} on average; check the units of time and positions",
+                "Der Weg wird im Mittel mit {0} zurückgelegt; die Einheiten von Zeit und Positionen prüfen",
+            )
+            .with(PhraseValue::significant(Quantity::Speed, self.value)),
             _ => Phrase::new(
                 "nowhere along the path is the vehicle faster than {0}; check the units of time and positions",
                 "Nirgends auf dem Weg ist das Fahrzeug schneller als {0}; die Einheiten von Zeit und Positionen \

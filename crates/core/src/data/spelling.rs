@@ -49,10 +49,9 @@ pub(crate) fn meaning(header: &str) -> Meaning {
         }
     }
     match (channel(header), wrong_unit) {
-        // The name alone does not tell `steering_wheel [%]` from a header without a unit.
-        (Some(_), Some(Meaning::WrongUnit(channel, text)))
-            if letters_and_digits(&text).is_empty() && is_unit(&text) =>
-        {
+        // The letters alone do not tell `steering_wheel [%]` from a header without a unit, nor an
+        // acceleration `X (g)` from the position `xg`.
+        (Some(_), Some(Meaning::WrongUnit(channel, text))) if is_unit(&text) => {
             Meaning::WrongUnit(channel, text)
         }
         (Some(channel), _) => Meaning::Channel(channel, None),
@@ -334,6 +333,8 @@ mod tests {
             ("Kraft X [kN]", Channel::Fx, "kN"),
             ("Fx [-]", Channel::Fx, ""),
             ("Fx [MN]", Channel::Fx, "MN"),
+            ("xg", Channel::X, ""),
+            ("x_g [m]", Channel::X, "m"),
         ] {
             let unit = unit(channel.quantity(), symbol);
             assert_eq!(meaning(header), Meaning::Channel(channel, unit), "{header}");
@@ -351,6 +352,9 @@ mod tests {
             ("time [furlong]", Channel::Time, "furlong"),
             ("steering_wheel [%]", Channel::SteeringWheel, "%"),
             ("Fx (%)", Channel::Fx, "%"),
+            ("X (g)", Channel::X, "g"),
+            ("Y [g]", Channel::Y, "g"),
+            ("x_g", Channel::X, "g"),
         ] {
             let expected = Meaning::WrongUnit(channel, unit.to_owned());
             assert_eq!(meaning(header), expected, "{header}");

@@ -28,6 +28,9 @@ const SHOWN_LINES: usize = 40;
 /// Number of characters of a line that a dialog shows.
 const SHOWN_CHARS: usize = 120;
 
+/// Number of other sheets or parts of a file that are named.
+const SHOWN_PARTS: usize = 4;
+
 /// A delimited text file that was read as a table.
 #[derive(Debug, Clone)]
 pub struct Table {
@@ -212,12 +215,32 @@ impl Table {
         self.said.as_ref()?.model_start.as_ref()
     }
 
-    /// What is said of the file if it is of a format of its own; none for a plain table.
+    /// The other sheets or parts of the file, which are not read; `None` if there are none, or if the results of a
+    /// model say themselves which is read.
+    fn other_parts(&self) -> Option<Note> {
+        let sheet =
+            self.sheet.as_ref().filter(|sheet| sheet.all.len() > 1 && !self.is_of_model())?;
+        let others = sheet.all.iter().enumerate().filter(|(_, name)| **name != sheet.name);
+        let shown =
+            others.take(SHOWN_PARTS).map(|(idx, name)| format!("sheet={} {name:?}", idx + 1));
+        let shown: Vec<String> = shown.collect();
+        let text = format!(
+            "read is {:?}, one of {} parts of the file; not read are {}{}",
+            sheet.name,
+            sheet.all.len(),
+            shown.join(", "),
+            if sheet.all.len() - 1 > shown.len() { " and more" } else { "" }
+        );
+        Some(Note::Format { text })
+    }
+
+    /// What is said of the file if it is of a format of its own or has several parts.
     pub(super) fn format_notes(&self) -> Vec<Note> {
-        let Some(said) = &self.said else { return Vec::new() };
+        let parts = self.other_parts().into_iter();
+        let Some(said) = &self.said else { return parts.collect() };
         let format = Note::Format { text: said.description.clone() };
         let doubts = said.doubts.iter().map(|text| Note::Doubt { text: text.clone() });
-        std::iter::once(format).chain(doubts).collect()
+        std::iter::once(format).chain(parts).chain(doubts).collect()
     }
 
     /// An error in this table. In a sheet its place is the cell.

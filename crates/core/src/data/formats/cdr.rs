@@ -283,6 +283,14 @@ pub(crate) fn is_before_crash(section: &Section) -> bool {
     letters_and_digits(&section.title).starts_with("precrash") && section.is_table()
 }
 
+/// Whether a section has the seconds before the crash in another way: with the times in a row, as older modules do.
+pub(crate) fn is_unread_before_crash(section: &Section) -> bool {
+    let is_row = |cells: &[String]| cells.len() > 2 && !is_no_data(cells);
+    letters_and_digits(&section.title).starts_with("precrash")
+        && !section.is_table()
+        && section.rows.iter().any(|(_, cells)| is_row(cells))
+}
+
 /// The number at the beginning of a cell: `31 [50]` is 31.
 pub(crate) fn number(cell: &str) -> Option<f64> {
     let first = match cell.split_once('[') {

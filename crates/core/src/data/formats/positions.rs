@@ -202,8 +202,14 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
     if n_without > 0 {
         doubts.push(format!("{n_without} sentences without a position are left out"));
     }
-    let (fixes, of_talkers) = of_one_clock(fixes, wanted);
+    let (mut fixes, of_talkers) = of_one_clock(fixes, wanted);
     doubts.extend(of_talkers);
+    let n_held = if wanted == "RMC" { hold_course(&mut fixes) } else { 0 };
+    if n_held > 0 {
+        doubts.push(format!(
+            "{n_held} sentences have no course, as those of a receiver that stands: the one before is held"
+        ));
+    }
     let header = match wanted {
         "RMC" => RMC_HEADER,
         _ => "time [s]\tlatitude [deg]\tlongitude [deg]",
@@ -211,6 +217,26 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
     let rows: String = fixes.into_iter().map(|fix| fix.row).collect();
     let track = Track { name: wanted.to_owned(), header, rows };
     (if track.rows.is_empty() { Vec::new() } else { vec![track] }, doubts)
+}
+
+/// Gives fixes without a course that of the one before, the first ones that of the first one that has it; their number.
+fn hold_course(fixes: &mut [Fix]) -> usize {
+    let course = |fix: &Fix| {
+        let course = fix.row.trim_end().rsplit_once('\t').map(|(_, course)| course.to_owned());
+        course.filter(|_| !fix.row.ends_with("\t\n"))
+    };
+    let mut last = fixes.iter().find_map(course);
+    let mut n_held = 0;
+    for fix in fixes {
+        if let Some(own) = course(fix) {
+            last = Some(own);
+            continue;
+        }
+        let Some(held) = &last else { continue };
+        fix.row.insert_str(fix.row.len() - 1, held);
+        n_held += 1;
+    }
+    n_held
 }
 
 /// The fixes of the talker that comes first, with those of others at instants that it leaves out; without these
@@ -352,6 +378,17 @@ mod tests {
         let x = loaded.series.require(Channel::X).unwrap();
         assert!((x[1] - 68.68).abs() < 0.05 && x[0] == 0.0, "{x:?}");
         assert_eq!(loaded.series.time_s(), [36_000.0, 36_005.0]);
+        let said = |loaded: &crate::data::Loaded| {
+            let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+            notes
+                .join("\n")
+                .contains("one of 2 parts of the file; not read are sheet=2 \"track 2\"")
+        };
+        assert!(!said(&loaded), "{:?}", loaded.notes);
+        let twice = text.replace("</trk>", "</trk><trk></trk>");
+        let segment = text.split("<trk>").nth(1).and_then(|of| of.split("</trk>").next()).unwrap();
+        let twice = twice.replace("<trk></trk>", &format!("<trk>{segment}</trk>"));
+        assert!(said(&read("a.gpx", &twice).unwrap()));
         assert!(read("a.gpx", "<?xml version=\"1.0\"?>\n<gpx></gpx>").is_err());
         let timeless = text.replace("<time>", "<cmt>").replace("</time>", "</cmt>");
         let error = read("a.gpx", &timeless).unwrap_err().to_string();
@@ -383,6 +420,24 @@ mod tests {
         ] {
             assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
         }
+    }
+
+    #[test]
+    fn a_receiver_that_stands_has_no_course() {
+        let rmc = |second: u32, course: &str| {
+            let lon = 60.0 - 0.005 * f64::from(second);
+            sentence(&format!(
+                "GPRMC,10000{second}.00,A,5200.0000,N,000{lon:.4},W,10.0,{course},251126,,"
+            ))
+        };
+        let text = rmc(1, "") + &rmc(2, "080.0") + &rmc(3, "") + &rmc(4, "070.0");
+        let loaded = read("a.nmea", &text).unwrap();
+        let yaw = loaded.series.require(Channel::Yaw).unwrap();
+        let yaw_deg: Vec<f64> = yaw.iter().map(|yaw| yaw.to_degrees().round()).collect();
+        assert_eq!(yaw_deg, [10.0, 10.0, 10.0, 20.0]);
+        let is_said =
+            |note: &crate::data::Note| note.to_string().contains("2 sentences have no course");
+        assert!(loaded.notes.iter().any(is_said), "{:?}", loaded.notes);
     }
 
     /// A receiver names its satellites by turns, another one says each instant twice.

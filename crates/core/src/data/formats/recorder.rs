@@ -13,7 +13,7 @@ use std::path::Path;
 
 use crate::data::budget::MAX_TABLE_BYTES;
 use crate::data::formats::cdr::{
-    MAX_BYTES, Report, Section, column_name, is_before_crash, is_report,
+    MAX_BYTES, Report, Section, column_name, is_before_crash, is_report, is_unread_before_crash,
 };
 use crate::data::formats::recorder_table::Table563;
 use crate::data::spelling::{is_delta_v, letters_and_digits, trailing_unit};
@@ -203,6 +203,13 @@ impl RecorderRecord {
             None => !has_several,
         };
         let sections: Vec<&Section> = report.sections.iter().filter(is_of_event).collect();
+        for section in sections.iter().filter(|section| is_unread_before_crash(section)) {
+            record.doubts.push(format!(
+                "the table {:?} has no header above its rows and is not read: write its times and speeds below each \
+                 other",
+                section.title
+            ));
+        }
         for section in sections.iter().filter(|section| section.is_table()) {
             let numbers = |idx: usize| section.column(idx);
             let texts = |idx: usize| section.texts(idx);

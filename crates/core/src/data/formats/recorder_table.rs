@@ -58,7 +58,7 @@ impl RecorderRecord {
             ("lateral", &mut self.delta_v_right, "to the right"),
         ] {
             let is_wanted =
-                |key: &str| is_delta_v(key) && key.contains(words) && !key.contains("maximum");
+                |key: &str| is_delta_v(key) && key.contains(words) && !has(key, &NO_RECORD);
             let Some(values) = table.column(Quantity::Speed, &mut doubts, is_wanted) else {
                 continue;
             };
@@ -83,6 +83,7 @@ impl RecorderRecord {
             }
             *slot = Some(recorded);
         }
+        doubts.extend(table.unread_delta_v());
         match has_controls {
             true if self.before.time_s.is_empty() => {
                 self.add_controls(table, &time_s, &mut doubts);
@@ -102,22 +103,10 @@ impl RecorderRecord {
         time_s: &[Option<f64>],
         doubts: &mut Vec<String>,
     ) {
-        let is_speed = |key: &str| {
-            let others =
-                ["deltav", "change", "engine", "wheelspeed", "cruise", "setspeed", "limit"];
-            key.contains("speed") && !others.iter().any(|other| key.contains(other))
-        };
         let speed = table.column(Quantity::Speed, doubts, is_speed).unwrap_or_default();
         let steering = table.column(Quantity::Angle, doubts, |key| key.contains("steering"));
-        let yaw_rate =
-            table.column(Quantity::AngularVelocity, doubts, |key| key.starts_with("yawrate"));
-        let is_brake = |key: &String| {
-            key.contains("brake") && !["abs", "pressure"].iter().any(|other| key.contains(other))
-        };
-        let is_anti_lock = |key: &String| {
-            let is_lamp = ["lamp", "warning", "indicator"].iter().any(|word| key.contains(word));
-            (key.starts_with("abs") || key.contains("antilock")) && !is_lamp
-        };
+        let is_yaw_rate = |key: &str| key.contains("yawrate") && !has(key, &["desired", "target"]);
+        let yaw_rate = table.column(Quantity::AngularVelocity, doubts, is_yaw_rate);
         let rows = rows_before(time_s, &speed, doubts);
         let all = |values: &[Option<f64>], range: Range| {
             let of = |row: &usize| {
@@ -155,14 +144,8 @@ impl RecorderRecord {
         };
         let steering = of(steering, STEERING_WHEEL_ANGLE, "angle of the steering wheel", doubts);
         let yaw_rate = of(yaw_rate, ANGULAR_VELOCITY_SAMPLE, "yaw rate", doubts);
-        let keys = table.keys();
-        let switch = |column: Option<usize>| {
-            let texts = (table.texts)(column?);
-            let on = |row: &usize| is_on(texts.get(*row)?);
-            rows.iter().map(on).collect::<Option<Vec<bool>>>()
-        };
-        let braked = switch(keys.iter().position(is_brake));
-        let anti_lock = switch(keys.iter().position(is_anti_lock));
+        let braked = table.switch(&rows, is_brake, "service brake", doubts);
+        let anti_lock = table.switch(&rows, is_anti_lock, "anti-lock system", doubts);
         self.before = RecordedControls {
             time_s,
             speed_m_s,
@@ -172,6 +155,38 @@ impl RecorderRecord {
             is_anti_lock_active: anti_lock.unwrap_or_default(),
         };
     }
+}
+
+fn has(key: &str, words: &[&str]) -> bool {
+    words.iter().any(|word| key.contains(word))
+}
+
+/// Words of columns of a change of velocity that are no record of it over time: its largest value, and the parts
+/// of which it is the sum.
+const NO_RECORD: [&str; 3] = ["maximum", "persample", "changeper"];
+
+/// Whether a column has the speed of the car, and not that of a wheel, of the engine, of another car or of a driver's
+/// wish.
+fn is_speed(key: &str) -> bool {
+    let others = [
+        "deltav", "change", "engine", "motor", "cruise", "setspeed", "acc", "limit", "relative",
+        "target", "lead", "gps",
+    ];
+    let is_of_wheel = key.contains("wheel") && !key.contains("vehicle");
+    key.contains("speed") && !is_of_wheel && !has(key, &others)
+}
+
+/// Whether a column says if the driver brakes.
+fn is_brake(key: &str) -> bool {
+    let others =
+        ["abs", "pressure", "park", "hand", "warning", "lamp", "pedalposition", "force", "torque"];
+    key.contains("brake") && !has(key, &others)
+}
+
+/// Whether a column says if the anti-lock system is at work.
+fn is_anti_lock(key: &str) -> bool {
+    let is_its = key.starts_with("abs") || key.contains("antilock");
+    is_its && !has(key, &["lamp", "warning", "indicator", "fault"])
 }
 
 /// The rows before the crash that have a speed.
@@ -227,7 +242,48 @@ impl Table563<'_> {
         self.header.iter().map(bare).collect()
     }
 
-    /// The numbers of the first column whose name fits and that has a unit, in SI units.
+    /// Columns of a change of velocity that are not read, with the reason.
+    fn unread_delta_v(&self) -> Vec<String> {
+        let columns = self.keys().into_iter().zip(&self.header);
+        let of_delta_v = columns.filter(|(key, name)| {
+            let has_unit = matches!(trailing_unit(name, Quantity::Speed), Ok(Some(_)));
+            is_delta_v(key) && has_unit && !key.contains("maximum")
+        });
+        let unread = |(key, name): (String, &String)| {
+            let why = match () {
+                () if has(&key, &NO_RECORD) => "has the change from sample to sample",
+                () if has(&key, &["longitudinal", "lateral"]) => return None,
+                () => "says neither longitudinal nor lateral in its name",
+            };
+            Some(format!("{} {why}; it is not read", quoted(name)))
+        };
+        of_delta_v.filter_map(unread).collect()
+    }
+
+    /// What the first column says whose name fits and that is on or off in all rows; one that is not is said.
+    fn switch(
+        &self,
+        rows: &[usize],
+        fits: impl Fn(&str) -> bool,
+        name: &str,
+        doubts: &mut Vec<String>,
+    ) -> Option<Vec<bool>> {
+        let keys = self.keys();
+        let columns: Vec<usize> = (0..keys.len()).filter(|idx| fits(&keys[*idx])).collect();
+        let read = |idx: &usize| {
+            let texts = (self.texts)(*idx);
+            rows.iter().map(|row| is_on(texts.get(*row)?)).collect::<Option<Vec<bool>>>()
+        };
+        let found = columns.iter().find_map(read);
+        if found.is_none() && !columns.is_empty() {
+            doubts.push(format!(
+                "the {name} is not recorded as on or off throughout; it is left out"
+            ));
+        }
+        found
+    }
+
+    /// The numbers of the first column whose name fits and that has a unit, in SI units. Others that fit are said.
     fn column(
         &self,
         quantity: Quantity,
@@ -240,6 +296,17 @@ impl Table563<'_> {
             }
             match trailing_unit(name, quantity) {
                 Ok(Some(unit)) => {
+                    let later = self.keys().into_iter().enumerate().skip(idx + 1);
+                    let later: Vec<String> = later
+                        .filter(|(_, key)| fits(key))
+                        .filter_map(|(at, _)| self.header.get(at))
+                        .filter(|name| matches!(trailing_unit(name, quantity), Ok(Some(_))))
+                        .map(|name| quoted(name))
+                        .collect();
+                    if !later.is_empty() {
+                        let later = later.join(", ");
+                        doubts.push(format!("{} is read, and not {later}", quoted(name)));
+                    }
                     let values = (self.numbers)(idx).into_iter();
                     return Some(
                         values.map(|value| value.map(|value| unit.to_si(value))).collect(),
@@ -354,10 +421,9 @@ fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
 /// Whether a switch is on; `None` if the cell does not say.
 fn is_on(cell: &str) -> Option<bool> {
     match letters_and_digits(cell).as_str() {
-        "on" | "yes" | "applied" | "active" | "engaged" | "true" => Some(true),
-        "off" | "no" | "notapplied" | "inactive" | "false" | "nonengaged" | "notengaged" => {
-            Some(false)
-        }
-        _ => number(cell).map(|number| number != 0.0),
+        "on" | "yes" | "applied" | "pressed" | "active" | "engaged" | "true" => Some(true),
+        "off" | "no" | "notapplied" | "released" | "notpressed" | "inactive" | "false"
+        | "nonengaged" | "notengaged" => Some(false),
+        _ => number(cell).filter(|number| [0.0, 1.0].contains(number)).map(|number| number != 0.0),
     }
 }

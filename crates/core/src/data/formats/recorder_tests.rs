@@ -41,6 +41,22 @@ fn a_report_gives_evidence_and_controls() {
     assert!(read(REPORT, Some(3)).is_err());
 }
 
+/// Older modules have the times of the seconds before the crash in a row.
+#[test]
+fn a_table_before_the_crash_that_lies_on_its_side_is_said() {
+    let table = REPORT.find("Times (sec)").unwrap()..REPORT.find("\"DELTA-V, LONG").unwrap();
+    let mut text = REPORT.to_owned();
+    text.replace_range(
+        table,
+        "Time (sec),-2.6,-1.6,-0.6\n\"Vehicle Speed (MPH [km/h])\",40 [64],36 [58],30 [48]\n",
+    );
+    let record = read(&text, None).unwrap();
+    assert!(record.speed_before.is_none() && record.delta_v_ahead.is_some(), "{record:?}");
+    assert!(record.doubts.iter().any(|doubt| doubt.contains("no header above")), "{record:?}");
+    let plain = read(REPORT, None).unwrap();
+    assert!(!plain.doubts.iter().any(|doubt| doubt.contains("no header above")), "{plain:?}");
+}
+
 #[test]
 fn events_are_told_apart_and_their_tables_belong_together() {
     for (title, event) in [
@@ -226,4 +242,54 @@ fn rows_without_a_speed_between_others_are_counted() {
     assert_eq!(record.before.time_s, [-1.5, -0.5]);
     let doubt = record.doubts.iter().find(|doubt| doubt.contains("have no speed")).unwrap();
     assert!(doubt.contains(": 1;"), "{doubt}");
+}
+
+/// Columns that stand before that of the car's own speed and of its service brake.
+#[test]
+fn a_speed_is_that_of_the_car_and_a_brake_that_of_the_driver() {
+    let text = |extra: &str, brake: &str| {
+        let row =
+            |at: i32, on: &str| format!("{at},20,20.4,Off,{},{on},{}\n", 60 + 2 * at, 2 * (at + 3));
+        format!(
+            "Time [s],{extra} [km/h],Brake Pedal Position [%],Parking Brake,Vehicle Speed [km/h],{brake},Stability \
+             Control Yaw Rate [deg/s]\n{}{}{}",
+            row(-2, "Off"),
+            row(-1, "On"),
+            row(0, "On")
+        )
+    };
+    for extra in ["Speed Wheel LF", "ACC Speed", "Relative Speed", "GPS Speed"] {
+        let record = read(&text(extra, "Service Brake"), None).unwrap();
+        let speed = record.speed_before.unwrap();
+        assert!((speed.speed_m_s - 60.0 / 3.6).abs() < 1e-9, "{extra}: {speed:?}");
+        assert_eq!(record.before.is_braked, [false, true, true], "{extra}");
+        assert_eq!(record.before.yaw_rate_right_rad_s.len(), 3);
+    }
+    let said = |record: &RecorderRecord, word: &str| {
+        record.doubts.iter().any(|doubt| doubt.contains(word))
+    };
+    let two = read(&text("Speed over ground", "Service Brake"), None).unwrap();
+    assert!(said(&two, "and not \"Vehicle Speed"), "{two:?}");
+    let open = text("ACC Speed", "Service Brake").replace("On", "Circuit open");
+    let open = read(&open, None).unwrap();
+    assert!(open.before.is_braked.is_empty() && said(&open, "on or off throughout"), "{open:?}");
+}
+
+/// A change from sample to sample is none over time, and a direction that is not named is none that is known.
+#[test]
+fn a_change_of_velocity_that_is_not_read_is_said() {
+    let text = |name: &str| {
+        let row = |at: i32| format!("{},{},{}\n", 10 * at, -4 * at, -3 * at);
+        let rows: String = (0..12).map(row).collect();
+        format!("Time [ms],\"Delta-V, longitudinal [km/h]\",\"{name} [km/h]\"\n{rows}")
+    };
+    for name in ["Delta-V Y", "Delta-V, lateral Change Per Sample"] {
+        let record = read(&text(name), None).unwrap();
+        assert!(record.delta_v_ahead.is_some() && record.delta_v_right.is_none(), "{record:?}");
+        let is_said = |doubt: &String| doubt.contains(name) && doubt.ends_with("it is not read");
+        assert!(record.doubts.iter().any(is_said), "{record:?}");
+    }
+    let plain = read(&text("Delta-V, lateral"), None).unwrap();
+    assert!(plain.delta_v_right.is_some(), "{plain:?}");
+    assert!(!plain.doubts.iter().any(|doubt| doubt.ends_with("it is not read")), "{plain:?}");
 }

@@ -94,9 +94,26 @@ pub(super) fn wrong(path: &Path, line: Option<u64>, message: &dyn std::fmt::Disp
     SiteError::Survey { path: path.to_owned(), place, message }
 }
 
+/// Other spellings of units at the end of a header.
+const SPELLINGS: [(&str, &str); 8] = [
+    ("us survey feet", "us_survey_ft"),
+    ("us survey ft", "us_survey_ft"),
+    ("us feet", "us_survey_ft"),
+    ("us ft", "us_survey_ft"),
+    ("usft", "us_survey_ft"),
+    ("feet", "ft"),
+    ("metres", "m"),
+    ("meters", "m"),
+];
+
 /// The unit of a word at the end of a header, such as `E [m]` or `northing_ft`, and what stands before it.
 pub(super) fn name_and_unit(header: &str) -> (String, Option<LengthUnit>) {
-    let header = header.trim().trim_matches('"').to_lowercase();
+    let mut header = header.trim().trim_matches('"').to_lowercase();
+    let bare = header.trim_end_matches([']', ')']);
+    let other = SPELLINGS.iter().find_map(|(end, word)| Some((bare.strip_suffix(end)?, word)));
+    if let Some((before, word)) = other {
+        header = format!("{before}{word}");
+    }
     let ends = LengthUnit::WORDS.iter().zip(LengthUnit::ALL).filter_map(|(word, unit)| {
         let bare = header.trim_end_matches([']', ')']);
         let before = bare.strip_suffix(word)?;

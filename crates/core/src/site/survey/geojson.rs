@@ -1,7 +1,8 @@
 //! Reads GeoJSON (RFC 7946): features with their geometries, longitude before latitude.
 //!
 //! Files of the draft of 2008 may have a member `crs` and the coordinates of a grid; coordinates that are no
-//! degrees are taken as easting and northing in metres.
+//! degrees are taken as easting and northing in metres. Those of web maps have metres that grow with the latitude
+//! and are refused.
 
 use std::path::Path;
 
@@ -12,6 +13,9 @@ use crate::site::{MapShape, SiteError};
 
 /// Members of properties that name a feature, in the order in which they are looked for.
 const NAMES: [&str; 5] = ["name", "Name", "NAME", "title", "id"];
+
+/// Codes of the Mercator projection of web maps.
+const OF_WEB_MAPS: [&str; 5] = ["3857", "3785", "900913", "102100", "102113"];
 
 /// Whether a text that begins like this is GeoJSON.
 ///
@@ -32,8 +36,12 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
         let line = (error.line() > 0).then_some(error.line() as u64);
         wrong(path, line, &format!("is no GeoJSON: {error}"))
     })?;
+    let mut system = None;
     let features = match parsed {
-        GeoJson::FeatureCollection(collection) => collection.features,
+        GeoJson::FeatureCollection(collection) => {
+            system = collection.foreign_members.as_ref().and_then(stated_system);
+            collection.features
+        }
         GeoJson::Feature(feature) => vec![feature],
         GeoJson::Geometry(geometry) => {
             vec![Feature { geometry: Some(geometry), ..Feature::default() }]
@@ -49,11 +57,25 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
     }
     let is_degree = |[lon, lat]: &[f64; 2]| lon.abs() <= 180.0 && lat.abs() <= 90.0;
     found.is_geographic = found.things.iter().flat_map(|thing| &thing.at).all(is_degree);
+    let code = system.as_deref().and_then(|name| name.rsplit(':').next()).unwrap_or_default();
+    if !found.is_geographic && OF_WEB_MAPS.contains(&code) {
+        let expected = "has the coordinates of web maps (EPSG:3857), whose metres are too short by the cosine of the \
+                        latitude; export it in degrees (EPSG:4326) or in a grid of the country";
+        return Err(wrong(path, None, &expected));
+    }
     if !found.is_geographic {
-        let note = "coordinates are no longitude and latitude; taken as easting and northing";
-        found.notes.push(note.to_owned());
+        let of = system.map(|name| format!(" of the system {name}")).unwrap_or_default();
+        found.notes.push(format!(
+            "coordinates are no longitude and latitude; taken as easting and northing{of}, in metres unless another \
+             unit is said (--unit)"
+        ));
     }
     Ok(found)
+}
+
+/// The name of the reference system that a file of the draft of 2008 states.
+fn stated_system(members: &JsonObject) -> Option<String> {
+    members.get("crs")?.get("properties")?.get("name")?.as_str().map(kept_text)
 }
 
 /// What the properties of a feature say.

@@ -25,7 +25,7 @@ use crate::site::{MapShape, SiteError};
 /// Elements within elements, at most.
 const MAX_DEPTH: usize = 64;
 
-/// The KML of an archive: the first file of that ending.
+/// The KML of an archive: `doc.kml`, else the first file of that ending.
 ///
 /// # Errors
 /// [`SiteError::Survey`] for another archive, [`DataError::TooLarge`] for too much text.
@@ -34,21 +34,28 @@ pub(super) fn unpacked(path: &Path, bytes: &[u8]) -> Result<Vec<u8>, SiteError> 
         wrong(path, None, &format!("the archive cannot be read: {error}"))
     };
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| damaged(&error))?;
+    let mut chosen = None;
     for idx in 0..archive.len() {
         let part = archive.by_index(idx).map_err(|error| damaged(&error))?;
+        // Others are those to which this one links.
+        if part.name().is_ok_and(|name| name.to_lowercase() == "doc.kml") {
+            chosen = Some(idx);
+            break;
+        }
         let is_kml = part.name().is_ok_and(|name| name.to_lowercase().ends_with(".kml"));
-        if !is_kml {
-            continue;
-        }
-        let mut text = Vec::new();
-        part.take(MAX_SURVEY_BYTES + 1).read_to_end(&mut text).map_err(|error| damaged(&error))?;
-        if text.len() as u64 > MAX_SURVEY_BYTES {
-            let (bytes, limit) = (text.len() as u64, MAX_SURVEY_BYTES);
-            return Err(DataError::TooLarge { path: path.to_owned(), bytes, limit }.into());
-        }
-        return Ok(text);
+        chosen = chosen.or(is_kml.then_some(idx));
     }
-    Err(wrong(path, None, &"is an archive without a .kml file"))
+    let Some(idx) = chosen else {
+        return Err(wrong(path, None, &"is an archive without a .kml file"));
+    };
+    let part = archive.by_index(idx).map_err(|error| damaged(&error))?;
+    let mut text = Vec::new();
+    part.take(MAX_SURVEY_BYTES + 1).read_to_end(&mut text).map_err(|error| damaged(&error))?;
+    if text.len() as u64 > MAX_SURVEY_BYTES {
+        let (bytes, limit) = (text.len() as u64, MAX_SURVEY_BYTES);
+        return Err(DataError::TooLarge { path: path.to_owned(), bytes, limit }.into());
+    }
+    Ok(text)
 }
 
 /// Reads the text of a KML file.

@@ -63,6 +63,8 @@ struct Columns {
     name: Option<usize>,
     code: Option<usize>,
     units: [Option<LengthUnit>; 3],
+    /// Names of the columns that are not read.
+    others: Vec<String>,
     /// Whether the columns are called x and y, which some surveys count to the north and to the east.
     is_xy: bool,
 }
@@ -88,6 +90,10 @@ impl Columns {
             word.is_some_and(|word| OF_SERIES.contains(&word))
         };
         let is_series = cells.iter().any(|(name, _)| is_of_series(name));
+        let used = [Some(east), Some(north), height, name, code];
+        let others = line.split(char::from(separator)).map(kept_text).enumerate();
+        let others = others.filter(|(idx, name)| !used.contains(&Some(*idx)) && !name.is_empty());
+        let others = others.map(|(_, name)| name).collect();
         (is_list && !is_series).then_some(Self {
             separator,
             east,
@@ -96,6 +102,7 @@ impl Columns {
             name,
             code,
             units,
+            others,
             is_xy: is_plain,
         })
     }
@@ -162,6 +169,11 @@ impl Columns {
         if options.unit.is_none() && east.zip(north).is_some_and(|(east, north)| east != north) {
             return Err(wrong(path, Some(1), &"E and N have different units"));
         }
+        if plane.is_none() && height.is_some_and(|unit| unit != LengthUnit::Metre) {
+            let expected = "the header says the unit of the heights and not that of E and N; write it there, too, or \
+                            say one for all (--unit)";
+            return Err(wrong(path, Some(1), &expected));
+        }
         let plane = plane.unwrap_or_default();
         let height = options.unit.or(height).unwrap_or(plane);
         Ok([plane.length_m(), plane.length_m(), height.length_m()])
@@ -169,7 +181,7 @@ impl Columns {
 
     fn notes(&self, options: &SurveyOptions) -> Vec<String> {
         let mut notes = Vec::new();
-        if options.unit.is_none() && self.units == [None; 3] {
+        if options.unit.is_none() && self.units.iter().take(2).all(Option::is_none) {
             notes.push("no unit is said; coordinates are taken as metres".to_owned());
         }
         if self.is_xy {
@@ -178,6 +190,9 @@ impl Columns {
                  mirrored: call its columns N and E"
                     .to_owned(),
             );
+        }
+        if !self.others.is_empty() {
+            notes.push(format!("columns that are not read: {}", self.others.join(", ")));
         }
         if self.code.is_none() {
             notes.push("there is no column of codes, so that all are points".to_owned());
@@ -273,6 +288,22 @@ mod tests {
         let is_said = |notes: Vec<String>| notes.iter().any(|note| note.contains("mirrored"));
         assert!(is_said(notes("id,x,y,z,code")));
         assert!(!is_said(notes("id,E,N,Z,code")));
+    }
+
+    #[test]
+    fn a_unit_of_heights_alone_is_asked_for_and_columns_that_are_left_out_are_said() {
+        let read = |header: &str, unit: Option<LengthUnit>| {
+            let text = format!("{header}\n1,2,3,4,TREE\n");
+            let options = SurveyOptions { unit, ..SurveyOptions::default() };
+            read(Path::new("points.csv"), &text, &options)
+        };
+        let in_feet = "pt,E,N,Z [ft],code";
+        let error = read(in_feet, None).unwrap_err().to_string();
+        assert!(error.contains("the unit of the heights"), "{error}");
+        assert!(read(in_feet, Some(LengthUnit::Foot)).is_ok());
+        assert!(read("pt,E (US ft),N (US ft),Z (US ft),code", None).is_ok());
+        let found = read("pt,E [m],N [m],Orthometric Height,code", None).unwrap();
+        assert_eq!(found.notes, ["columns that are not read: Orthometric Height"]);
     }
 
     #[test]

@@ -76,6 +76,21 @@ fn coordinates_of_a_grid_are_shifted_by_whole_metres() {
 }
 
 #[test]
+fn the_system_of_a_grid_is_said_and_that_of_web_maps_refused() {
+    let map = |system: &str| {
+        format!(
+            r#"{{"type": "FeatureCollection", "crs": {{"type": "name", "properties": {{"name": "{system}"}}}},
+            "features": [{{"type": "Feature", "properties": {{"name": "edge"}}, "geometry": {{"type": "LineString",
+            "coordinates": [[1447153.4, 6800125.5], [1447185.8, 6800125.5]]}}}}]}}"#
+        )
+    };
+    let notes = read("map.geojson", &map("urn:ogc:def:crs:EPSG::2263")).unwrap().notes.join(" ");
+    assert!(notes.contains("EPSG::2263, in metres unless another unit"), "{notes}");
+    let error = read("map.geojson", &map("urn:ogc:def:crs:EPSG::3857")).unwrap_err();
+    assert!(error.contains("web maps"), "{error}");
+}
+
+#[test]
 fn points_of_a_code_of_a_line_are_joined_in_their_order() {
     let text = "name;E [m];N [m];Z;code\n1;512345,5;5423456,5;101,3;KERB1\n\
         2;512350,5;5423456,5;101,2;kerb2\n3;512355,5;5423456,5;101,1;KERB1\n\
@@ -212,9 +227,12 @@ fn an_archive_of_a_map_is_read() {
     let path = folder.path().join("map.kmz");
     let mut archive = zip::ZipWriter::new(std::fs::File::create(&path).unwrap());
     let options = zip::write::SimpleFileOptions::default();
+    archive.start_file("files/other.kml", options).unwrap();
+    std::io::Write::write_all(&mut archive, KML.replace("skid", "other").as_bytes()).unwrap();
     archive.start_file("doc.kml", options).unwrap();
     std::io::Write::write_all(&mut archive, KML.as_bytes()).unwrap();
     archive.finish().unwrap();
     let site = Site::load(&path).unwrap();
     assert_eq!((site.lines.len(), site.kerbs.len(), site.points.len()), (1, 1, 1));
+    assert_eq!(site.lines[0].name, "skid & scuff");
 }
