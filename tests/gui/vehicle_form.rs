@@ -264,3 +264,29 @@ fn a_stiffness_is_typed_in_pounds_and_inches() {
     assert_eq!(striking, None);
     save(&mut harness, "vehicle-form-crush-us.png");
 }
+
+/// A trainer says where the bumper touches and how fast the cars close.
+#[test]
+fn an_approach_that_is_typed_places_the_contact_and_moves_the_striking_car() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::Show(Pane::Scenario));
+    harness.run_steps(4);
+    let scenario = |harness: &Harness<'_, App>| state(harness).project.scenario().unwrap().clone();
+    let before = scenario(&harness);
+    type_into(&mut harness, "Contact ahead of rear bumper", "0.9 m");
+    type_into(&mut harness, "Striking vehicle faster by", "2 m/s");
+    type_into(&mut harness, "Closing speed across", "3 m/s");
+    let after = scenario(&harness);
+    let approach = after.side_approach().unwrap();
+    let typed = [approach.ahead_of_rear_m, approach.faster_m_s, approach.closing_m_s];
+    for (typed, expected) in typed.into_iter().zip([0.9, 2.0, 3.0]) {
+        assert!((typed - expected).abs() < 1e-9, "{approach:?}");
+    }
+    assert_eq!(after.struck, before.struck);
+    assert_eq!(after.striking.heading_rad, before.striking.heading_rad);
+    step_until(&mut harness, "the other collision", is_idle);
+    save(&mut harness, "scenario-approach.png");
+    apply(&mut harness, Command::Undo);
+    assert_ne!(scenario(&harness), after, "an edit can be taken back");
+}

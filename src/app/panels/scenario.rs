@@ -96,6 +96,7 @@ fn forms_ui(
     units: UnitSystem,
 ) {
     vehicles_form(ui, scenario, &session.chosen_vehicles, units);
+    approach_form(ui, scenario, units);
     contact_form(ui, &mut scenario.contact, pulse, units);
     let Scenario { ending, striking_ending, .. } = scenario;
     for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)] {
@@ -321,6 +322,34 @@ fn road_form(
             ui.end_row();
         });
     });
+}
+
+/// Draws the place and the speeds of a blow into a side as a driver would tell them: other names for the
+/// offset of the contact and the velocity of the striking vehicle.
+fn approach_form(ui: &mut Ui, scenario: &mut Scenario, units: UnitSystem) {
+    let Some(mut approach) = scenario.side_approach() else { return };
+    let heading = egui::CollapsingHeader::new("Approach").default_open(true);
+    let shown = heading.show(ui, |ui| {
+        let rear = CONTACT_OFFSET.within([0.0, scenario.struck.length_m]);
+        let fields = [
+            ("Contact ahead of rear bumper", &mut approach.ahead_of_rear_m, rear),
+            ("Striking vehicle faster by", &mut approach.faster_m_s, SPEED),
+            ("Closing speed across", &mut approach.closing_m_s, SPEED),
+        ];
+        let grid = Grid::new("approach").num_columns(2);
+        let moved = grid.show(ui, |ui| {
+            fields.into_iter().fold(false, |moved, (label, value, range)| {
+                quantity_field(ui, label, value, &range, units) | moved
+            })
+        });
+        moved.inner
+    });
+    let hint = "Along and across the heading of the struck vehicle. Changes the offset of the contact and \
+                the velocity of the striking vehicle; its heading stays";
+    shown.header_response.on_hover_text(hint);
+    if shown.body_returned == Some(true) {
+        scenario.approach_beside(approach);
+    }
 }
 
 /// Draws the fields of the contact location, restitution and friction, and of the pulse over which

@@ -48,6 +48,7 @@ mod scenario_preset;
 mod scenario_skid;
 mod scenario_write;
 mod second_contact;
+mod side_approach;
 
 pub mod contact;
 pub mod crush;
@@ -88,6 +89,7 @@ pub use scenario_of_vehicle::{Role, SharedNumber};
 pub use scenario_preset::SCENARIO_PRESETS;
 pub use scenario_skid::{BeforeSkid, ScenarioSkid};
 pub use second_contact::SecondContact;
+pub use side_approach::SideApproach;
 
 #[cfg(test)]
 mod pit_tests;
