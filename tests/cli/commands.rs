@@ -464,7 +464,7 @@ fn what_nobody_said_is_listed_as_assumed() {
     assert_eq!(assumed(&all_given), [] as [&str; 0]);
     let scenario = assumed(&["simulate", "--scenario", SCENARIO]);
     let quantities: Vec<&str> = scenario.iter().filter_map(|text| text.split(':').next()).collect();
-    assert_eq!(quantities, ["pulse", "contact_height", "vehicle", "bullet"]);
+    assert_eq!(quantities, ["pulse", "contact_height", "vehicle", "bullet", "bullet"]);
     assert_eq!(
         assumed(&["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"]),
         [] as [&str; 0]

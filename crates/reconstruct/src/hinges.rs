@@ -11,8 +11,45 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::latent::LatentValues;
 use crate::{Latent, Posterior, ReconstructedQuantity};
 use impactlab_core::units::Quantity;
+
+/// What a speed hinges on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum HingeInput {
+    /// Drag factor of the struck or the single car with all wheels locked: the product of the friction of
+    /// the road and what tires make of it, which evidence of a drag factor holds together.
+    LockedDrag,
+    /// A quantity that is drawn.
+    #[serde(untagged)]
+    Drawn(Latent),
+}
+
+impl HingeInput {
+    /// What it is called.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::LockedDrag => "drag factor of locked wheels",
+            Self::Drawn(latent) => latent.label(),
+        }
+    }
+
+    fn quantity(self) -> Quantity {
+        match self {
+            Self::LockedDrag => Quantity::Ratio,
+            Self::Drawn(latent) => latent.quantity(),
+        }
+    }
+
+    fn value(self, values: &LatentValues) -> f64 {
+        match self {
+            Self::LockedDrag => values.locked_drag(),
+            Self::Drawn(latent) => values.get(latent),
+        }
+    }
+}
 
 /// The quantities, and how much larger each one is taken to be.
 const STEPS: [(Latent, f64); 16] = [
@@ -34,6 +71,9 @@ const STEPS: [(Latent, f64); 16] = [
     (Latent::CarSideslip, 0.05),
 ];
 
+/// How much larger the drag factor of locked wheels is taken to be.
+const DRAG_STEP: f64 = 0.1;
+
 /// Number of standard errors beyond which a slope is no chance: one of 400 slopes that are none is.
 const CLEAR: f64 = 3.0;
 
@@ -44,7 +84,7 @@ const MOST: usize = 5;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SpeedHinge {
     /// The quantity.
-    pub input: Latent,
+    pub input: HingeInput,
     /// By how much it is larger, in its SI unit.
     pub step: f64,
     /// By how much the speed of the struck car, or of a single one, is larger then, m/s.
@@ -93,8 +133,8 @@ impl Posterior {
         let struck_m_s = self.values(self.speed());
         let of_striking = ReconstructedQuantity::StrikingSpeed;
         let striking_m_s = (!self.is_of_single_car()).then(|| self.values(of_striking));
-        let hinge = |&(input, step): &(Latent, f64)| {
-            let x: Vec<f64> = self.values.iter().map(|values| values.get(input)).collect();
+        let hinge = |(input, step): (HingeInput, f64)| {
+            let x: Vec<f64> = self.values.iter().map(|values| input.value(values)).collect();
             let change = |speeds_m_s: &[f64]| {
                 let [slope, error] = slope(&x, speeds_m_s, self.ess)?;
                 Some(SpeedChange { change_m_s: slope * step, standard_error_m_s: error * step })
@@ -103,8 +143,11 @@ impl Posterior {
             let striking_speed = striking_m_s.as_deref().and_then(change);
             Some(SpeedHinge { input, step, struck_speed, striking_speed })
         };
-        let all: Vec<SpeedHinge> = STEPS.iter().filter_map(hinge).collect();
-        let is_friction = |hinge: &SpeedHinge| hinge.input == Latent::RoadFriction;
+        let drawn = STEPS.iter().map(|&(latent, step)| (HingeInput::Drawn(latent), step));
+        let inputs = drawn.chain([(HingeInput::LockedDrag, DRAG_STEP)]);
+        let all: Vec<SpeedHinge> = inputs.filter_map(hinge).collect();
+        let road = HingeInput::Drawn(Latent::RoadFriction);
+        let is_friction = |hinge: &SpeedHinge| hinge.input == road;
         let (mut hinges, others): (Vec<SpeedHinge>, Vec<SpeedHinge>) =
             all.into_iter().partition(is_friction);
         let mut others: Vec<SpeedHinge> = others.into_iter().filter(SpeedHinge::is_clear).collect();
@@ -181,7 +224,8 @@ mod tests {
             impact.struck_speed_m_s = 20.0 * values.get(Latent::RoadFriction);
         }
         let hinges = posterior.hinges();
-        assert_eq!((hinges[0].input, hinges[0].step), (Latent::RoadFriction, 0.1));
+        let road = HingeInput::Drawn(Latent::RoadFriction);
+        assert_eq!((hinges[0].input, hinges[0].step), (road, 0.1));
         assert!((hinges[0].struck_speed.change_m_s - 2.0).abs() < 1e-9, "{hinges:?}");
         assert!(hinges.len() < 3, "{hinges:?}");
         let few = Posterior::from_points(&model, &z[..99]);

@@ -50,7 +50,7 @@ pub use computed_marks::MarkComparison;
 pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel, StrikingMotion};
 pub use hand::{HandCalculation, HandCheck, HandSpeed};
-pub use hinges::{SpeedChange, SpeedHinge};
+pub use hinges::{HingeInput, SpeedChange, SpeedHinge};
 pub use impact_state::ImpactState;
 pub use latent::{
     ANTI_LOCK_PROBABILITY, BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues,

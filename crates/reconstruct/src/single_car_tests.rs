@@ -8,7 +8,7 @@ use super::*;
 use crate::evidence::examples::read;
 use crate::sampler::{Particles, SamplerSettings, sample, standard_normals};
 use crate::{
-    CollisionMotion, Discrepancy, ForwardModel, HandCheck, HandSpeed, Posterior, Prior,
+    CollisionMotion, Discrepancy, ForwardModel, HandCheck, HandSpeed, HingeInput, Posterior, Prior,
     ReconstructedQuantity, ReconstructionTarget,
 };
 use impactlab_core::numerics::{quantile_of_sorted, random_stream};
@@ -91,6 +91,11 @@ fn a_straight_skid_with_locked_wheels_has_the_speed_of_its_energy() {
         assert!(low < expected_m_s && expected_m_s < high && high - low < 3.0, "{low} {high}");
         let hinges = posterior.hinges();
         assert!(hinges.iter().all(|hinge| hinge.striking_speed.is_none()), "{hinges:?}");
+        // dv = v dμ / (2 μ): the drag factor moves the speed, whatever road and tires make of it.
+        let drag = hinges.iter().find(|hinge| hinge.input == HingeInput::LockedDrag).unwrap();
+        let expected_change_m_s = 0.1 * expected_m_s / (2.0 * 0.7);
+        let change = drag.struck_speed.change_m_s / expected_change_m_s;
+        assert!((0.7..1.3).contains(&change), "seed {seed}: {change} of {expected_change_m_s}");
         let measured: Vec<&str> = posterior.budget(0).iter().map(|item| item.known).collect();
         let expected = ["road_friction", "tire_friction_factor", "speed_m_s"];
         assert_eq!(measured, expected, "what is fixed is not measured");

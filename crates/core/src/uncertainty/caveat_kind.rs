@@ -31,7 +31,8 @@ pub enum CaveatKind {
     OutsideDomain,
     /// No contact of two bodies brings the predicted impulse about.
     ImplausibleContact,
-    /// The bare physics says something else than the network, beyond the bands of the network.
+    /// The bare physics says something else than the network, beyond the bands of the network; or the law of
+    /// the contact, for most draws.
     Disagreement,
     /// The collision gives a vehicle that was chosen by name another mass or size than the vehicle has.
     OtherVehicle,

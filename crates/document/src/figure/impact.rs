@@ -52,8 +52,11 @@ pub fn impact_figure(
         let vehicle = format!("{name} vehicle");
         let style = LineStyle::Solid;
         elements.extend(vehicle_outline(&vehicle, role, style, &footprint, &pose, x.unit));
-        let delta_v = scaled(after.delta_v_world_m_s, longest);
-        elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
+        // An object that does not move has no Δv.
+        if role == Role::Simulation || scenario.striking.fixed.is_none() {
+            let delta_v = scaled(after.delta_v_world_m_s, longest);
+            elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
+        }
     }
     let [px, py] = solution.impulse_world_n_s;
     let impulse = scaled([px, py], px.hypot(py));

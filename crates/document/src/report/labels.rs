@@ -6,7 +6,7 @@ use impactlab_core::vehicle::Integrator;
 use impactlab_study::word;
 
 /// Names whose words do not say what they mean.
-const NAMES: [(&str, &str); 36] = [
+const NAMES: [(&str, &str); 37] = [
     ("alone", "without the other method beside it"),
     ("bullet", "striking vehicle"),
     ("bullet_ending", "striking vehicle after the impact"),
@@ -23,6 +23,7 @@ const NAMES: [(&str, &str); 36] = [
     ("friction_limit", "friction limit μ_c"),
     ("friction_model", "friction in the contact"),
     ("friction_of_critical", "share of critical ratio"),
+    ("friction_sigma", "friction, one standard deviation"),
     ("from", "contact given by"),
     ("integrator", "method of integration"),
     ("offset_m", "offset from its middle"),

@@ -98,7 +98,8 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
             add_rest(&mut scene, rest, &shape, [name, tag]);
         }
     }
-    for (idx, NamedPath { name, path }) in input.others.iter().enumerate() {
+    // The likeliest one is drawn last and named first.
+    for (idx, NamedPath { name, path }) in input.others.iter().enumerate().rev() {
         let (motion, role) = (motion_of(path, &shape.body), SceneRole::Variant(idx + 1));
         add(&mut scene, [name, driven], role, CarLook::Ghost, &shape, motion);
     }

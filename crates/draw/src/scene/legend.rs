@@ -212,7 +212,11 @@ fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
     let crushes =
         scene.crushes.iter().map(|crush| (crush.name.as_str(), SceneRole::Crush, Entry::Line));
     let points = scene.points.iter().map(|point| (point.name.as_str(), point.role, Entry::Point));
-    let arrows = scene.arrows.iter().map(|arrow| ("impulse", arrow.role, Entry::Line));
+    let impulse = match scene.language {
+        Language::En => "impulse",
+        Language::De => "Impuls",
+    };
+    let arrows = scene.arrows.iter().map(|arrow| (impulse, arrow.role, Entry::Line));
     let forces = scene.forces.iter().map(|force| (force.name.as_str(), force.role, Entry::Line));
     let crosses =
         scene.crosses.iter().map(|cross| (cross.name.as_str(), SceneRole::Evidence, Entry::Cross));

@@ -5,7 +5,7 @@ use impactlab_core::collision::{
 };
 use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, CaveatText};
-use impactlab_core::units::{Phrase, PhraseValue, Quantity, three_digits};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{ContactPoint, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters};
 
@@ -24,7 +24,11 @@ fn estimate(estimate: &Estimate) -> Caveat {
     let number = |value: f64| match Quantity::from_si_symbol(unit) {
         Some(quantity) => PhraseValue::three_digits(quantity, value),
         None if unit.is_empty() => PhraseValue::three_digits(Quantity::Ratio, value),
-        None => PhraseValue::Name(format!("{} {unit}", three_digits(value))),
+        // A unit that no quantity has; the number has the decimal sign of the language.
+        None => PhraseValue::phrase(
+            Phrase::new(format!("{{0}} {unit}"), format!("{{0}} {}", unit.replace("deg", "°")))
+                .with(PhraseValue::three_digits(Quantity::Ratio, value)),
+        ),
     };
     let bare = |value: f64| match Quantity::from_si_symbol(unit) {
         Some(quantity) => PhraseValue::three_digits(quantity, value).bare(),
@@ -168,6 +172,23 @@ pub(crate) fn contact_point(contact: ContactPoint, reason: impl Into<CaveatText>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+
+    /// “Wankgradient 5.7 deg/g, 90 %: 3,9 bis 8,32” stood in German reports.
+    #[test]
+    fn a_unit_that_no_quantity_has_leaves_the_number_its_decimal_sign() {
+        let sheet = impactlab_core::vehicle::built_in_vehicle("toyota-camry-2018").unwrap();
+        let english = NumberFormat::english(UnitSystem::Si);
+        let german = NumberFormat { language: Language::De, ..english };
+        let told = |format: &NumberFormat| {
+            let texts = estimates(&sheet);
+            let texts = texts.iter().filter_map(|it| it.text_in(format, &str::to_owned));
+            texts.collect::<Vec<_>>().join("; ")
+        };
+        assert!(told(&german).contains("5,7 °/g"), "{}", told(&german));
+        assert!(told(&german).contains("17 1/rad") && !told(&german).contains("deg"));
+        assert!(told(&english).contains("5.7 deg/g"), "{}", told(&english));
+    }
 
     #[test]
     fn the_friction_of_a_data_sheet_is_that_of_the_road() {

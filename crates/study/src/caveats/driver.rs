@@ -1,25 +1,37 @@
-//! What the driver does, where the end is asked for and nobody has said it.
+//! What the drivers do, where nobody has said it.
 
 use crate::{MotionSource, SimulateRequest, StudyError};
-use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use impactlab_core::collision::Scenario;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::Phrase;
 
-/// That a motion is followed to rest although nobody has said what the driver does: whether the vehicle
-/// brakes decides by far the most where it stops.
+/// What nobody has said of the drivers of both vehicles.
 ///
 /// # Errors
 /// [`StudyError`] if the scenario cannot be read.
-pub(crate) fn open_driver(question: &SimulateRequest) -> Result<Option<Caveat>, StudyError> {
-    let is_said = match &question.source {
-        MotionSource::Scenario { scenario, .. } => {
-            question.ending.is_some() || scenario.load()?.ending.is_some()
+pub(crate) fn open_drivers(question: &SimulateRequest) -> Result<Vec<Caveat>, StudyError> {
+    let scenario = match &question.source {
+        MotionSource::Scenario { scenario, .. } => Some(scenario.load()?),
+        MotionSource::Drive(_) | MotionSource::Case { .. } | MotionSource::Trajectory { .. } => {
+            None
         }
-        MotionSource::Drive(_) => question.ending.is_some(),
+    };
+    let of_striking = scenario.as_ref().filter(|_| !question.one_contact);
+    let of_striking = of_striking.and_then(|scenario| open_striking(scenario, question.until_rest));
+    Ok(open_struck(question, scenario.as_ref()).into_iter().chain(of_striking).collect())
+}
+
+/// That a motion is followed to rest although nobody has said what the driver does: whether the vehicle
+/// brakes decides by far the most where it stops.
+fn open_struck(question: &SimulateRequest, scenario: Option<&Scenario>) -> Option<Caveat> {
+    let is_said = match &question.source {
+        MotionSource::Scenario { .. } | MotionSource::Drive(_) => {
+            question.ending.is_some() || scenario.is_some_and(|it| it.ending.is_some())
+        }
         // A record has the driver that it has.
         MotionSource::Case { .. } | MotionSource::Trajectory { .. } => true,
     };
-    let is_open = question.until_rest && !is_said;
-    Ok(is_open.then(|| {
+    (question.until_rest && !is_said).then(|| {
         let text = Phrase::new(
             "nobody has said what the driver does: the vehicle rolls to rest unbraked, over \
              distances that were compared with no record; say that it brakes (--brake 0.8), or that \
@@ -29,7 +41,38 @@ pub(crate) fn open_driver(question: &SimulateRequest) -> Result<Option<Caveat>, 
              (--brake 0.8) oder rollt (--coast)",
         );
         Caveat::new(CaveatKind::DriverOpen, text)
-    }))
+    })
+}
+
+/// That the striking vehicle coasts because nobody has said what its driver does: it may push the struck one
+/// on, and where it goes hangs on that alone.
+///
+/// - `until_rest`: then it is a warning.
+fn open_striking(scenario: &Scenario, until_rest: bool) -> Option<Caveat> {
+    let is_open = scenario.striking.fixed.is_none() && scenario.striking_ending.is_none();
+    is_open.then(|| {
+        if until_rest {
+            let text = Phrase::new(
+                "nobody has said what the driver of the striking vehicle does: it coasts; one that \
+                 brakes or drives on pushes the struck one in another way and ends elsewhere; \
+                 [bullet_ending] of the scenario says it",
+                "Zum Verhalten des Fahrers des stoßenden Fahrzeugs liegt keine Angabe vor: Es rollt \
+                 ungebremst. Gebremst oder angetrieben würde es das gestoßene anders schieben und \
+                 anderswo enden",
+            );
+            let caveat = Caveat::new(CaveatKind::DriverOpen, text);
+            return Caveat { subject: Some(CaveatSubject::Striking), ..caveat };
+        }
+        Caveat::assumed(
+            CaveatSubject::Striking,
+            Phrase::new("its driver lets it roll", "sein Fahrer lässt es rollen"),
+            Phrase::new(
+                "nobody has said what the driver of the striking vehicle does; otherwise: \
+                 [bullet_ending] of the scenario",
+                "zum Verhalten des Fahrers des stoßenden Fahrzeugs liegt keine Angabe vor",
+            ),
+        )
+    })
 }
 
 #[cfg(test)]
@@ -40,15 +83,34 @@ mod tests {
     use impactlab_core::collision::Scenario;
     use impactlab_core::vehicle::Ending;
 
+    fn asked(scenario: Scenario) -> SimulateRequest {
+        let scenario = ScenarioChoice::Inline(Box::new(scenario));
+        let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+        SimulateRequest::new(source)
+    }
+
     #[test]
     fn only_a_motion_to_rest_with_a_driver_that_nobody_named_is_warned_of() {
-        let scenario = ScenarioChoice::Inline(Box::new(Scenario::example()));
-        let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
-        let timed = SimulateRequest::new(source);
-        assert_eq!(open_driver(&timed).unwrap(), None);
+        let scenario = Scenario { striking_ending: Some(Ending::default()), ..Scenario::example() };
+        let timed = asked(scenario);
+        assert_eq!(open_drivers(&timed).unwrap(), []);
         let to_rest = SimulateRequest { until_rest: true, ..timed };
-        assert!(open_driver(&to_rest).unwrap().unwrap().is_warning());
+        let [open]: [Caveat; 1] = open_drivers(&to_rest).unwrap().try_into().unwrap();
+        assert!(open.is_warning());
         let coasts = SimulateRequest { ending: Some(Ending::default()), ..to_rest };
-        assert_eq!(open_driver(&coasts).unwrap(), None);
+        assert_eq!(open_drivers(&coasts).unwrap(), []);
+    }
+
+    #[test]
+    fn a_striking_driver_of_whom_nobody_speaks_is_assumed_to_coast() {
+        let timed = asked(Scenario { striking_ending: None, ..Scenario::example() });
+        let [assumed]: [Caveat; 1] = open_drivers(&timed).unwrap().try_into().unwrap();
+        assert!(assumed.subject == Some(CaveatSubject::Striking) && !assumed.is_warning());
+        let to_rest =
+            SimulateRequest { until_rest: true, ending: Some(Ending::default()), ..timed.clone() };
+        let [open]: [Caveat; 1] = open_drivers(&to_rest).unwrap().try_into().unwrap();
+        assert!(open.is_warning());
+        let alone = SimulateRequest { one_contact: true, ..timed };
+        assert_eq!(open_drivers(&alone).unwrap(), []);
     }
 }

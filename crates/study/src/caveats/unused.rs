@@ -140,7 +140,16 @@ pub(crate) fn integrator_of_pair(integrator: Integrator) -> Option<Caveat> {
 }
 
 /// A single motion through all contacts: what it takes at its median.
-pub(crate) fn contact_at_medians() -> Caveat {
+///
+/// - `is_fixed`: whether the struck vehicle meets an object that does not move, of which there is no forecast.
+pub(crate) fn contact_at_medians(is_fixed: bool) -> Caveat {
+    if is_fixed {
+        let text = Phrase::new(
+            "stiffness, friction and recovery of the contact are at their medians",
+            "Steifigkeit, Reibung und Rückfederung des Kontakts haben ihre Medianwerte",
+        );
+        return Caveat::new(CaveatKind::Note, text);
+    }
     let text = Phrase::new(
         "stiffness, friction and recovery of the contact are at their medians; predict draws them, \
          and small causes decide whether a car that is pushed comes free or spins",

@@ -4,7 +4,7 @@
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
-use crate::analysis::{PlaceChance, Sensitivity};
+use crate::analysis::{MotionOutcome, PlaceChance, RestOutcome, Sensitivity};
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::{ImpulseRival, PredictMotionReport};
@@ -94,16 +94,27 @@ impl PredictMotionReport {
             Fact::row(Value::Joined(name, " "), vec![self.place_chance(share)])
         };
         let [struck, striking] = self.entered_places();
+        let struck_end = match self.outcome.stands(self.rest.as_ref()) {
+            true => Term::StruckEndsOver,
+            false => Term::StruckIsOver,
+        };
+        // The striking vehicle is followed until the struck one stands, and may drive on.
+        let of_striking = self.striking.as_ref();
+        let striking_stands = of_striking.is_some_and(|of| of.outcome.stands(of.rest.as_ref()));
+        let striking_end = match striking_stands {
+            true => Term::StrikingEndsOver,
+            false => Term::StrikingIsOver,
+        };
         let struck = struck.into_iter().flat_map(|place| {
             [
                 named(Term::StruckComesOver, place, place.struck_enters),
-                named(Term::StruckEndsOver, place, place.struck_ends),
+                named(struck_end, place, place.struck_ends),
             ]
         });
         let striking = striking.into_iter().flat_map(|place| {
             [
                 named(Term::StrikingComesOver, place, place.striking_enters),
-                named(Term::StrikingEndsOver, place, place.striking_ends),
+                named(striking_end, place, place.striking_ends),
             ]
         });
         struck.chain(striking).collect()
@@ -161,6 +172,15 @@ pub(super) fn place_at(x_m: &Estimate, y_m: &Estimate) -> Value {
         Value::Joined(vec![Value::Text(axis.to_owned()), estimate], " ")
     };
     Value::Joined(vec![of("X", x_m), of("Y", y_m)], ", ")
+}
+
+impl MotionOutcome {
+    /// Whether the vehicle stands where its motion ends, in nearly all draws.
+    ///
+    /// - `rest`: where and when it comes to rest, of a motion that is followed to there.
+    pub(crate) fn stands(&self, rest: Option<&RestOutcome>) -> bool {
+        rest.map_or(self.is_at_rest, RestOutcome::is_nearly_all_at_rest)
+    }
 }
 
 #[cfg(test)]
@@ -230,5 +250,17 @@ pub(super) mod tests {
         );
         assert!(!names.iter().any(|name| name.contains("own lane")), "{names:?}");
         assert!(!names.iter().any(|name| name.contains("striking vehicle")), "{names:?}");
+    }
+
+    /// “ends on” was said of a vehicle that drove on at 53 km/h when the forecast was over.
+    #[test]
+    fn a_vehicle_that_still_moves_ends_nowhere() {
+        let places = vec![place("other lane", false)];
+        let report = PredictMotionReport { places, ..forecast(None) };
+        assert!(!report.outcome.stands(report.rest.as_ref()));
+        let names = names(&report);
+        assert!(!names.iter().any(|name| name.contains("vehicle ends on")), "{names:?}");
+        let expected = "the struck vehicle, still moving, is last on other lane";
+        assert!(names.iter().any(|name| name == expected), "{names:?}");
     }
 }

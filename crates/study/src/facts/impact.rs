@@ -1,6 +1,6 @@
 //! The facts of an impulse solution.
 
-use impactlab_core::collision::FrictionModel;
+use impactlab_core::collision::{FrictionModel, StruckSurface};
 use impactlab_core::units::Quantity;
 
 use crate::facts::{Fact, FactTable, Term, Value};
@@ -32,10 +32,18 @@ impl ImpactReport {
             Term::Pdof,
             Term::ClockDirection,
         ];
+        // An object that does not move has no motion after the impact.
+        let columns = match self.fixed {
+            Some(_) => &[Term::StruckVehicle][..],
+            None => &[Term::StruckVehicle, Term::StrikingVehicle],
+        };
         let both = terms.into_iter().zip(struck.into_iter().zip(striking));
-        let rows = both.map(|(term, (a, b))| Fact::row(Value::Term(term), vec![a, b])).collect();
-        let vehicles = FactTable::new(Term::VehiclesAfterImpact, rows)
-            .with_columns(&[Term::StruckVehicle, Term::StrikingVehicle]);
+        let row = |(term, (a, b))| {
+            let values = [a, b].into_iter().take(columns.len()).collect();
+            Fact::row(Value::Term(term), values)
+        };
+        let rows = both.map(row).collect();
+        let vehicles = FactTable::new(Term::VehiclesAfterImpact, rows).with_columns(columns);
         [FactTable::new(Term::Impact, self.contact()), vehicles]
     }
 
@@ -66,9 +74,12 @@ impl ImpactReport {
                 facts.push(Fact::new(Term::ShareOfCritical, Value::Share(share)));
             }
         }
-        let surface = match &self.struck_surface {
-            Some(surface) => phrase(surface.to_string()),
-            None => Value::Term(Term::AsGiven),
+        let surface = match (&self.struck_surface, self.fixed) {
+            (Some(StruckSurface::Striking(_)), Some(object)) => {
+                phrase(format!("out of the {}", object.word()))
+            }
+            (Some(surface), _) => phrase(surface.to_string()),
+            (None, _) => Value::Term(Term::AsGiven),
         };
         facts.extend([
             Fact::number(Term::ContactNormal, Quantity::Angle, self.normal_angle_rad),

@@ -207,11 +207,17 @@ impl PredictMotionReport {
                 Fact::drawn(Term::EndY, Quantity::Length, &outcome.y_m),
             ]);
         }
-        facts.extend([
-            Fact::drawn(Term::HeadingChange, Quantity::Angle, &outcome.heading_change_rad),
-            Fact::rough(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
-            Fact::rough(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
-        ]);
+        facts.extend([Fact::drawn(
+            Term::HeadingChange,
+            Quantity::Angle,
+            &outcome.heading_change_rad,
+        )]);
+        if !outcome.stands(self.rest.as_ref()) {
+            facts.extend([
+                Fact::rough(Term::SpeedAtEnd, Quantity::Speed, outcome.speed_m_s),
+                Fact::rough(Term::YawRateAtEnd, Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
+            ]);
+        }
         let contacts = self.flags.iter().filter_map(|flag| flag.contact);
         let second = contacts.filter_map(|contact| contact.probability);
         facts.extend(second.map(|share| Fact::new(Term::SecondContact, self.chance(share))));

@@ -58,10 +58,12 @@ impl SimulateReport {
             facts.push(angle(Term::FinalHeading, end.yaw_rad));
             let turn = self.largest_yaw_change_rad;
             facts.extend(turn.map(|rad| angle(Term::LargestTurn, rad)));
-            facts.push(Fact::number(Term::FinalSpeed, Quantity::Speed, end.speed_m_s));
             match &self.rest {
                 Some(rest) => facts.extend(rest.facts()),
-                None => facts.push(Fact::new(Term::AtRest, Value::Term(Term::StillMoving))),
+                None => facts.extend([
+                    Fact::number(Term::FinalSpeed, Quantity::Speed, end.speed_m_s),
+                    Fact::new(Term::AtRest, Value::Term(Term::StillMoving)),
+                ]),
             }
         }
         if let Some(error) = &self.error {

@@ -16,7 +16,7 @@ use impactlab_core::collision::{
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::uncertainty::Caveats;
-use impactlab_core::vehicle::RoadSlope;
+use impactlab_core::vehicle::{FixedObject, RoadSlope};
 
 /// Seed of the draws from the force network beside the solution.
 const SEED: u64 = 0;
@@ -90,6 +90,9 @@ pub struct ImpactReport {
     /// The striking vehicle after the impact.
     #[serde(rename = "bullet")]
     pub striking: BodyReport,
+    /// What the striking one is, where it is an object that does not move.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<FixedObject>,
     /// The vehicles before skids that end at the first contact.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub skids: Vec<SkidReport>,
@@ -235,6 +238,7 @@ impl Question for ImpactRequest {
             dissipated_energy_j: solution.dissipated_energy_j,
             struck: (&solution.struck).into(),
             striking: (&solution.striking).into(),
+            fixed: scenario.striking.fixed,
             skids: SkidReport::of(&scenario, &scenario.road.unwrap_or_default()),
             rival,
         };

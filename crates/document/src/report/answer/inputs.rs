@@ -1,5 +1,7 @@
 //! What a question says, as rows of the table of inputs.
 
+use std::path::PathBuf;
+
 use serde_json::Value;
 
 use crate::report::InputClass;
@@ -9,10 +11,10 @@ use crate::report::method::Method;
 use crate::report::numbers::Wording;
 use crate::report::parts::{InputRow, Part};
 use crate::report::paths::ShownPaths;
-use impactlab_core::uncertainty::Caveat;
+use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_study::{
     HandRequest, ImpactRequest, PredictForceRequest, PredictMotionRequest, ReconstructRequest,
-    ReplayRequest, Request, SimulateRequest,
+    ReplayRequest, Request, ScenarioChoice, SimulateRequest,
 };
 
 /// What a question is about; everything else in it is a setting.
@@ -77,6 +79,7 @@ pub(in crate::report) fn given_rows(
             }
         }
     }
+    tell_files(&mut question);
     tell_speeds(&mut question);
     let defaults = flatten(&default_settings(request), wording, paths);
     let given = |row: FlatRow| {
@@ -95,6 +98,27 @@ pub(in crate::report) fn given_rows(
         }
     };
     flatten(&question, wording, paths).into_iter().map(given).collect()
+}
+
+/// Puts what a scenario file says beside its name: speeds, masses, contact and drivers are inputs, wherever they
+/// stand. A file that cannot be read any more keeps its name alone.
+fn tell_files(value: &mut Value) {
+    let Value::Object(fields) = value else { return };
+    for (name, inner) in fields.iter_mut() {
+        let file = inner.get("file").and_then(Value::as_str).map(PathBuf::from);
+        match (name == "scenario").then_some(file).flatten() {
+            Some(path) => {
+                let said = ScenarioChoice::File(path).load().ok();
+                let said = said.and_then(|scenario| serde_json::to_value(scenario).ok());
+                if let (Value::Object(choice), Some(Value::Object(mut said))) = (inner, said) {
+                    // What is left empty there is not said.
+                    said.retain(|_, value| value.as_str() != Some(""));
+                    choice.insert("inline".to_owned(), Value::Object(said));
+                }
+            }
+            None => tell_files(inner),
+        }
+    }
 }
 
 /// Puts speed and course, as people say them, in the place of the components of each velocity.
@@ -132,7 +156,12 @@ pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'
         Some(subject) => subject.label_in(wording.language),
         None => assumption.kind.label_in(wording.language),
     };
-    let assumed = part.caveats.assumptions().map(|assumption| InputRow {
+    // What a data sheet leaves open stands among the inputs already, with the rule and its interval.
+    let has_estimates = part.inputs.iter().any(|row| row.class == InputClass::Estimated);
+    let is_told_once = |assumption: &&Caveat| {
+        !has_estimates || assumption.subject != Some(CaveatSubject::VehicleParameter)
+    };
+    let assumed = part.caveats.assumptions().filter(is_told_once).map(|assumption| InputRow {
         // What several answers assume alike is listed once.
         group: wording.words.inputs_assumed.to_owned(),
         label: label(assumption).to_owned(),

@@ -10,10 +10,11 @@ use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_o
 use crate::report::answer::predict_force::applicability;
 use crate::report::answer::stills::forecast_still;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
+use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::opinion_of_forecast;
-use crate::report::parts::{Part, PartPicture};
+use crate::report::parts::{InputRow, Part, PartPicture};
 use impactlab_core::data::Channel;
 use impactlab_study::analysis::{DensityTask, MotionBands};
 use impactlab_study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest};
@@ -74,7 +75,7 @@ pub(super) fn part(
         of_first_force,
         in_opinion,
         pictures: pictures(request, answer, context).into_iter().chain(in_atlas.picture).collect(),
-        inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
+        inputs: input_rows(answer, wording),
         sensitivity: shares.chain(in_atlas.blocks).collect(),
         domain: domain(report, wording),
         caveats: report.caveats.clone(),
@@ -84,13 +85,30 @@ pub(super) fn part(
     }
 }
 
+/// Both vehicles, where both are followed, and the zones in which their wheels stand.
+fn input_rows(answer: &PredictMotionAnswer, wording: &Wording) -> Vec<InputRow> {
+    let (analysis, words) = (&answer.analysis, wording.words);
+    let striking = analysis.striking.as_ref().filter(|_| answer.report.striking.is_some());
+    let striking =
+        striking.map(|track| vehicle_rows(&track.start.vehicle, words.striking_vehicle, wording));
+    [
+        vehicle_rows(&analysis.vehicle, words.struck_vehicle, wording),
+        striking.unwrap_or_default(),
+        zone_rows(&analysis.friction_zones, wording),
+    ]
+    .concat()
+}
+
 fn domain(report: &PredictMotionReport, wording: &Wording) -> Vec<String> {
     let words = wording.words;
     let learned = wording.with_unit(&wording.fixed(report.learned_duration_s, 1), "s");
     let force = report.force_applicability;
     let mut lines = vec![applicability(words.response_network, report.applicability, wording)];
     lines.extend(force.map(|share| applicability(words.force_network, share, wording)));
-    lines.push(fill(words.learned_duration, &[("time", &learned)]));
+    // A forecast that ends before says nothing of what comes after.
+    if report.outcome.time_s > report.learned_duration_s {
+        lines.push(fill(words.learned_duration, &[("time", &learned)]));
+    }
     lines
 }
 

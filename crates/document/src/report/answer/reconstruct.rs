@@ -64,9 +64,11 @@ pub(super) fn part(
         doubts.map(|caveat| caveat.kind.label_in(wording.language)).collect();
     doubts.dedup();
     let mut opinion = opinion_of_reconstruction(report, &question, context);
-    for badge in doubts {
-        let doubt = fill(words.meaning_doubtful, &[("badge", badge)]);
+    if !doubts.is_empty() {
+        let doubt = fill(words.meaning_doubtful, &[("badges", &doubts.join(", "))]);
         opinion.answer = format!("{} {doubt}", opinion.answer);
+        // How often intervals of answers without such a restriction held says nothing of these.
+        opinion.held = None;
         blocks.push(Block::paragraph(doubt));
     }
     let draws = [

@@ -151,7 +151,8 @@ pub(super) const WORDS: Words = Words {
                    Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
         wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
-    meaning_doubtful: "Auf diese Intervalle ist kein Verlass: siehe die Warnung „{badge}“ in Abschnitt 6.",
+    meaning_doubtful: "Auf diese Intervalle und auf Wahrscheinlichkeiten von Geschehensabläufen ist kein Verlass: siehe die \
+        Warnungen in Abschnitt 6 ({badges}).",
     too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
         Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \
         einzelner Partikel. Mit mehr Partikeln erneut fragen und die Rechnung zu Ende führen.",
@@ -167,8 +168,9 @@ pub(super) const WORDS: Words = Words {
     marginal_picture: "{quantity}: wie wahrscheinlich sie ohne die Spuren ist und mit ihnen",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
-    left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. p ist die Wahrscheinlichkeit, dass die übrigen \
-        ihn so weit entfernt erwarten, wie er vorgefunden wurde, oder weiter. Ein Teil, der das Ergebnis mit sich zieht, \
+    left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. p ist eine obere Schranke der \
+        Wahrscheinlichkeit, dass die übrigen ihn so weit entfernt erwarten, wie er vorgefunden wurde, oder weiter: die \
+        kleinste seiner Merkmale mal deren Anzahl, höchstens 1. Ein Teil, der das Ergebnis mit sich zieht, \
         wird von einem Ergebnis erklärt, das ihm folgt; hier wird er selbst nicht gefragt.",
     several_courses: "Mehr als ein Ablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
         stehenden über alle können für keinen davon zutreffen.",
@@ -298,8 +300,8 @@ pub(super) const WORDS: Words = Words {
         eines Elements wächst linear über einen elastischen Ast bis A und dann um B mal die Eindringung, entlastet auf einer \
         steileren Geraden und lässt eine Delle zurück; längs der Fläche wirkt Reibung. A und B folgen nach Regel aus Klasse \
         und Masse, mit einer Streuung von 25 bis 40 %. Wo die Kraft des ersten Kontakts bekannt oder vorhergesagt ist, werden \
-        die Lasten so skaliert, dass das Gesetz dieselbe Arbeit aufnimmt, und an ihrem Ende übernimmt das Gesetz. Jede \
-        Ziehung hat eigene Steifigkeiten, Reibung, Rückfederung, Reifen, Fahrer und Systeme.",
+        die Lasten so skaliert, dass das Gesetz dieselbe Arbeit aufnimmt, und an ihrem Ende übernimmt das Gesetz. Fahrzeuge \
+        in Kontakt werden nach dem Leapfrog-Verfahren integriert, getrennte nach Runge–Kutta. Jede Ziehung hat eigene Steifigkeiten, Reibung, Rückfederung, Reifen, Fahrer und Systeme.",
     limits_contact: "Je Fläche eine Kontaktstelle zur selben Zeit, in einer Höhe. Räder, die sich verhaken, Aufbauten, die \
         aufeinander steigen, und Teile, die abreißen, fehlen. Nahe der Grenze zwischen Freikommen und Schleudern entscheiden \
         kleine Ursachen.",
@@ -310,10 +312,10 @@ pub(super) const WORDS: Words = Words {
         neuronales Netz um diesen Mittelwert sagt die Verteilung des ganzen Verlaufs als \
         Mischung voraus, einmal an Trainingsfällen kalibriert. Außerhalb des Gelernten tritt die \
         Impulslösung mit ihren gemessenen Fehlern an seine Stelle.",
-    limits_force: "Das mitgelieferte hat aus 349 simulierten Stößen gegen die Flanke einer Limousine, zu einem Fünftel eines SUV, \
-        gelernt, mit Annäherung von 0,5 bis 12 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein. Es weiß \
-        nicht, welches von beiden getroffen wurde, und kennt keine Fahrzeuggröße, keine Stoßziffer und keine Reibung \
-        zwischen ihnen.",
+    limits_force: "Das mitgelieferte hat aus 349 simulierten Stößen gegen die Flanke einer von zwei Limousinen, zu einem Fünftel eines SUV, \
+        gelernt, mit Annäherung von 0,5 bis 12 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein. Welche \
+        dieser Karosserien getroffen wurde, ist offen, wenn es nicht angegeben ist. Fahrzeuggröße, Stoßziffer und \
+        Reibung zwischen ihnen kennt es nicht.",
     method_response: "Bewegungsnetz",
     method_response_text: "Jeder Schritt der Bewegung ist einer des 4DOF-Modells mit einer begrenzten zusätzlichen \
         Beschleunigung: Effekte bekannter Form mit gelernten Stärken und ein Rest aus einem \
@@ -343,8 +345,9 @@ pub(super) const WORDS: Words = Words {
         Monte-Carlo-Verfahren zieht aus der Vorabverteilung, dann aus Mischungen von Normalverteilungen, die den \
         Spuren schrittweise folgen, und gewichtet jeden Zug nach der Dichte, aus der er stammt.",
     limits_single_car: "Bewegung nach dem 4DOF-Modell mit Vorderrädern, die mit einem Winkel gehalten werden; die \
-        Netze sind nicht beteiligt. Ein Fahrer, der hin und her lenkt oder die Bremse löst, und ein \
-        Antiblockiersystem bleiben außer Betracht. Eine Bewegung wird 40 s lang verfolgt.",
+        Netze sind nicht beteiligt. Ein Fahrer, der hin und her lenkt oder die Bremse löst, bleibt außer \
+        Betracht. Ein Antiblockiersystem hält den Schlupf nahe der größten Reibung und hinterlässt keine Spuren. Eine \
+        Bewegung wird 40 s lang verfolgt.",
     validation_single_car: "Fahrzeuge, die dieses Programm mit seinen eigenen Bewegungsgleichungen berechnet hat. Kein \
         reales wurde geprüft.",
     method_sheet: "Fahrzeugdaten nach Regel",
@@ -368,15 +371,15 @@ pub(super) const WORDS: Words = Words {
     table_four_dof: "Abstand zur Referenzbahn",
     validation_force: "Das mitgelieferte, gegen 25 Finite-Elemente-Rechnungen, die es nicht kennt, mit Annäherung von 0,8 bis 5 m/s; \
         Intervalle von 50 % sind dort zu breit. Von 61 anderen, mit Annäherung bis 12 m/s, enthielten Intervalle von 90 % \
-        90 % der Impulse, 92 % der größten Kräfte und 89 % der Dauern; der Fehler des Impulses war dort im Mittel 15 %, \
-        im Median 10 %.",
+        89 % der Impulse, 87 % der größten Kräfte und 95 % der Dauern; der Fehler des Impulses war dort im Mittel 18 %, \
+        im Median 13 %.",
     table_force: "Fehler, Median (Mittel), %",
     table_force_coverage: "Anteil der wahren Werte in den Intervallen, %, ± Standardfehler",
     validation_response: "Das mitgelieferte, gegen 180 simulierte Bewegungen von fünfzehn Fahrzeugen, die das Netz nicht kennt, jeweils \
         nach Datenblatt: Fehler über 4 s und am Ende, bis 12 s; Anteile der Zeitpunkte und Enden in den Bereichen. \
         Keine reale Bewegung wurde geprüft.",
     validation_contact: "95 simulierte Paare von Mehrkörperfahrzeugen, 84 davon PIT-Manöver; an die Hälfte ist das Gesetz \
-        angepasst. Kein realer Unfall wurde geprüft.",
+        angepasst. Dort galt es von der ersten Berührung an, ohne Kraftnetz, und das Verhalten der Fahrer war bekannt. Kein realer Unfall wurde geprüft.",
     table_contact: "Fehler über 4 s und am Ende, m, richtige Drehungen und Anteile der Zeitpunkte und Enden in den Flächen",
     table_response: "Fehler, m, und Abdeckung",
     validation_reconstruction: "40 simulierte Stöße gegen das Heckviertel eines Mehrkörperfahrzeugs mit drei Massen; \

@@ -145,7 +145,8 @@ pub(super) const WORDS: Words = Words {
                    uncertain as they say, and do not depend on each other.",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
         of section 3 and the models of section 5 hold.",
-    meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",
+    meaning_doubtful: "These intervals, and probabilities of courses of events, are not to be relied on: see the warnings \
+        in section 6 ({badges}).",
     too_few_particles: "No interval is given: the sample is equivalent to only {ess} independent draws, or the run was \
         stopped before the evidence had its full weight, so that the ends of an interval would rest on single \
         draws. Ask again with more particles, and let the run end.",
@@ -161,8 +162,9 @@ pub(super) const WORDS: Words = Words {
     marginal_picture: "{quantity}: how likely it is without the evidence and with it",
     fit_text: "p is the probability that measurement and model err by more than they do here; an item \
         below {level} counts as unexplained.",
-    left_out_text: "The speed without each part of the evidence in turn. p is the probability that the other parts \
-        expect it as far off as it was found, or farther. A part that pulls the answer along is explained by an \
+    left_out_text: "The speed without each part of the evidence in turn. p is an upper bound of the \
+        probability that the other parts expect it as far off as it was found, or farther: the smallest one of its items \
+        times their number, at most 1. A part that pulls the answer along is explained by an \
         answer that follows it; here it is not asked itself.",
     several_courses: "More than one course of events is possible. Each has figures of its own in section 4; those \
         over all of them, below, may be true of none.",
@@ -291,7 +293,8 @@ pub(super) const WORDS: Words = Words {
         element grows linearly over an elastic branch to A and then by B times the crush, unloads along a steeper line, and \
         leaves a dent; friction acts along the face that is entered. A and B follow from class and mass by rule, with a \
         scatter of 25 to 40 %. Where the force of the first contact is known or predicted, the loads are scaled so that the \
-        law takes the same work, and the law takes over at its end. Each draw takes a stiffness, friction, recovery, tires, \
+        law takes the same work, and the law takes over at its end. While the vehicles touch, both are integrated by the \
+        leapfrog method, and by the Runge–Kutta method while they are apart. Each draw takes a stiffness, friction, recovery, tires, \
         drivers and systems of its own.",
     limits_contact: "One place of contact at a time on each face, at one height. Wheels that hook, bodies that climb on each \
         other and parts that tear off are left out. Near the border between coming free and spinning small causes decide.",
@@ -301,9 +304,9 @@ pub(super) const WORDS: Words = Words {
         are averaged with it. A neural network around this centre predicts the distribution of \
         the whole curve as a mixture, calibrated once on training cases. Outside of what it \
         learned from, the momentum solution with its measured errors takes its place.",
-    limits_force: "The shipped one learned from 349 simulated impacts against the flanks of a saloon and, in a fifth of them, an SUV, \
-        which close at 0.5 to 12 m/s; the absolute force level may be off by some 40 %. It does not know which of the \
-        two was struck, no size of the vehicles, no restitution and no friction between them.",
+    limits_force: "The shipped one learned from 349 simulated impacts against the flanks of two saloons and, in a fifth of them, an SUV, \
+        which close at 0.5 to 12 m/s; the absolute force level may be off by some 40 %. Which of these bodies was struck \
+        is open unless it is said. It knows no size of the vehicles, no restitution and no friction between them.",
     method_response: "Response network",
     method_response_text: "Each step of the motion is one of the 4DOF model with a bounded acceleration added: \
         effects of known form with learned strengths, and a remainder by a neural network. \
@@ -332,8 +335,8 @@ pub(super) const WORDS: Words = Words {
         sequential Monte Carlo sampler draws from the prior, then from mixtures of normals that follow the evidence \
         step by step, and weighs every draw by the density that it came from.",
     limits_single_car: "Motion by the 4DOF model with front wheels that are held at one angle; the networks take no \
-        part in it. A driver who steers to and fro or lets the brake go, and an anti-lock system, are left out. A \
-        motion is followed for 40 s.",
+        part in it. A driver who steers to and fro or lets the brake go is left out. An anti-lock system holds the \
+        slip near the peak of the friction and leaves no marks. A motion is followed for 40 s.",
     validation_single_car: "Cars that this program simulated with its own equations of motion. No real one was tried.",
     method_sheet: "Vehicle data by rule",
     method_sheet_text: "What a data sheet does not state follows from the rest by rules with a scatter, each \
@@ -353,8 +356,8 @@ pub(super) const WORDS: Words = Words {
     validation_four_dof: "Against a multibody model of the same car over 4 s.",
     table_four_dof: "Distance from the reference path",
     validation_force: "The shipped one, against 25 finite-element runs that it has not seen, which close at 0.8 to 5 m/s; intervals of \
-        50 % are too wide there. Of 61 others, which close at up to 12 m/s, intervals of 90 % held 90 % of the impulses, \
-        92 % of the peaks and 89 % of the durations; it erred there by 15 % of the impulse in the mean, and by 10 % in \
+        50 % are too wide there. Of 61 others, which close at up to 12 m/s, intervals of 90 % held 89 % of the impulses, \
+        87 % of the peaks and 95 % of the durations; it erred there by 18 % of the impulse in the mean, and by 13 % in \
         the median.",
     table_force: "Errors, median (mean), %",
     table_force_coverage: "Share of the true values inside the intervals, %, ± standard error",
@@ -362,7 +365,8 @@ pub(super) const WORDS: Words = Words {
         data sheet: error over 4 s and at the end, up to 12 s; shares of instants and ends inside the regions. No \
         real motion was tried.",
     validation_contact: "95 simulated pairs of multibody cars, 84 of them PIT manoeuvres; the law was fitted to half of \
-        them. No real collision was tried.",
+        them. There it was used from the first touch on, without the force network, and what the drivers did was known. \
+        No real collision was tried.",
     table_contact: "Error over 4 s and at the end, m, turns that were right, and shares of instants and ends inside the \
         regions",
     table_response: "Errors, m, and coverage",

@@ -169,7 +169,13 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         (it.name.clone(), differs.into_iter().chain(notes).chain(figures).collect())
     };
     let columns: Vec<(String, NamedRows)> = spoken.iter().enumerate().map(column).collect();
-    beside(words.figures, [wording.words.quantity, wording.words.value], &columns, NONE)
+    // What a simulation varies is less than what a forecast does not know.
+    let is_simulation = |of: &PartOpinion| of.rank == Rank::Simulation;
+    let title = match spoken.iter().flat_map(Spoken::opinions).all(is_simulation) {
+        true => words.figures_of_simulation,
+        false => words.figures,
+    };
+    beside(title, [wording.words.quantity, wording.words.value], &columns, NONE)
 }
 
 /// How often such intervals held, each table once, and what the known error is.
@@ -181,10 +187,13 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
             blocks.push(table.clone());
         }
     }
-    if blocks.is_empty() {
+    // Of bounds and of intervals that were tried nothing is said where none were counted.
+    let is_counted = !blocks.is_empty();
+    if !is_counted {
         blocks.push(Block::paragraph(words.not_counted));
     }
-    let errors = [words.known_error, words.known_error_single_car, words.known_error_driven];
+    let known = if is_counted { words.known_error } else { words.known_error_uncounted };
+    let errors = [known, words.known_error_single_car, words.known_error_driven];
     blocks.extend(of_kinds(&methods_of(spoken), errors).map(Block::paragraph));
     blocks
 }
@@ -304,5 +313,29 @@ mod tests {
         assert!(told.contains("a (1)") && told.contains("a (2)"), "{told}");
         let told = format!("{:?}", figures(&spoken, &wording));
         assert!(told.contains("1 m") && told.contains("2 m"), "{told}");
+    }
+
+    /// “The intervals were tried …; the bounds are those of 95 % confidence” stood below “it was not counted”.
+    #[test]
+    fn intervals_that_were_not_counted_are_not_said_to_have_been_tried() {
+        let part = Part {
+            opinion: Some(PartOpinion {
+                rank: Rank::Simulation,
+                question: "How does it move?".to_owned(),
+                answer: "1 m".to_owned(),
+                courses: Vec::new(),
+                figures: Vec::new(),
+                held: None,
+                hinges: Vec::new(),
+            }),
+            methods: [Method::Impact, Method::FourDof].into(),
+            ..Part::default()
+        };
+        let variant =
+            VariantParts { name: "a".to_owned(), notes: String::new(), answers: vec![Ok(part)] };
+        let (variants, wording) = ([variant], Wording::english(UnitSystem::Si));
+        let told = format!("{:?}", held(&spoken(&variants), &wording));
+        assert!(told.contains("it was not counted"), "{told}");
+        assert!(!told.contains("were tried") && !told.contains("confidence"), "{told}");
     }
 }

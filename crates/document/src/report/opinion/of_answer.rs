@@ -56,10 +56,7 @@ pub(in crate::report) fn opinion_of_forecast(
         None => {
             let is_at_rest = report.outcome.is_at_rest;
             let template = if is_at_rest { words.at_rest } else { words.still_moves };
-            // It has no interval, and no more digits than the eye can use.
-            let unit = Quantity::Speed.display_unit(format.units);
-            let speed = unit.from_si(report.outcome.speed_m_s).round();
-            let speed = format.with_unit(&format!("{speed:.0}"), unit.symbol);
+            let speed = format.rough(Quantity::Speed, report.outcome.speed_m_s);
             sentences.push(fill(template, &[("time", &time), ("speed", &speed)]));
         }
     }
@@ -92,9 +89,12 @@ pub(in crate::report) fn opinion_of_reconstruction(
 ) -> PartOpinion {
     let words = opinion_words(context.wording.language);
     let speeds = report.speed_table();
-    let is_quantity = |fact: &&Fact| matches!(fact.name, Value::Phrase(_));
+    // That the cars meet again and that this is not followed is no detail of the annex.
+    let is_told = |fact: &&Fact| {
+        matches!(fact.name, Value::Phrase(_)) || is_one_of(fact, &[Term::MeetAgainByImpact])
+    };
     let speeds =
-        FactTable { facts: speeds.facts.iter().filter(is_quantity).cloned().collect(), ..speeds };
+        FactTable { facts: speeds.facts.iter().filter(is_told).cloned().collect(), ..speeds };
     let figures = rows_of(&speeds, |_| true, context);
     let mut sentences = Vec::new();
     if report.modes.len() > 1 {

@@ -11,6 +11,7 @@ pub(super) struct OpinionWords {
     pub course: &'static str,
     pub probability: &'static str,
     pub figures: &'static str,
+    pub figures_of_simulation: &'static str,
     pub differs: &'static str,
     pub first_variant: &'static str,
     pub asked_alike: &'static str,
@@ -21,6 +22,7 @@ pub(super) struct OpinionWords {
     pub how_sure: &'static str,
     pub not_counted: &'static str,
     pub known_error: &'static str,
+    pub known_error_uncounted: &'static str,
     pub known_error_single_car: &'static str,
     pub known_error_driven: &'static str,
     pub hinges: &'static str,
@@ -74,6 +76,8 @@ const EN: OpinionWords = OpinionWords {
     course: "What becomes of the struck vehicle",
     probability: "Probability",
     figures: "Figures; in brackets the interval that holds with a probability of 90 %",
+    figures_of_simulation: "Figures; in brackets the interval in which nine of ten drawn vehicles lie, where only what \
+        data sheets leave open is varied",
     differs: "what differs",
     first_variant: "the variant that the others are compared with",
     asked_alike: "asked as the first variant",
@@ -86,6 +90,8 @@ const EN: OpinionWords = OpinionWords {
     known_error: "The intervals were tried on computed collisions whose outcome was known; the known errors are in \
         section 7. The method was not validated against real collisions. The bounds are those of 95 % \
         confidence.",
+    known_error_uncounted: "The known errors of the models are in section 7. The method was not validated against real \
+        collisions.",
     known_error_single_car: "The method was tried on single cars that the program simulated itself, and was not \
         validated against real ones; what is known of its model stands in section 7.",
     known_error_driven: "The model was compared with multibody models of cars; its known errors are in section 7. It was \
@@ -127,8 +133,9 @@ const EN: OpinionWords = OpinionWords {
         changes with each of them was not computed.",
     impact_hinges: "The impulse follows from masses, velocities, place of contact, restitution and friction of \
         section 3; how much it changes with each of them was not computed.",
-    speed_hinges: "{name}: speed of the struck car {struck}, of the striking car {striking}.",
-    car_hinges: "{name}: speed of the car {speed}.",
+    speed_hinges: "{name}, as far as the evidence leaves it open: speed of the struck car {struck}, of the striking \
+        car {striking}.",
+    car_hinges: "{name}, as far as the evidence leaves it open: speed of the car {speed}.",
     share_hinges: "{name}: {place} of the variance of the place at the end, {heading} of that of the heading.",
 };
 
@@ -141,6 +148,8 @@ const DE: OpinionWords = OpinionWords {
     course: "Verbleib des gestoßenen Fahrzeugs",
     probability: "Wahrscheinlichkeit",
     figures: "Ergebnisse; in Klammern der Bereich, der mit einer Wahrscheinlichkeit von 90 % zutrifft",
+    figures_of_simulation: "Ergebnisse; in Klammern der Bereich, in dem neun von zehn gezogenen Fahrzeugen liegen; \
+        variiert wird nur, was Datenblätter offen lassen",
     differs: "Unterschied",
     first_variant: "Variante, mit der die anderen verglichen werden",
     asked_alike: "gefragt wie die erste Variante",
@@ -153,6 +162,8 @@ const DE: OpinionWords = OpinionWords {
     known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
         Fehler stehen in Abschnitt 7. Das Verfahren ist nicht an realen Unfällen validiert. Die Grenzen gelten \
         mit einer Sicherheit von 95 %.",
+    known_error_uncounted: "Die bekannten Fehler der Modelle stehen in Abschnitt 7. Das Verfahren ist nicht an realen \
+        Unfällen validiert.",
     known_error_single_car: "Das Verfahren wurde an einzelnen Fahrzeugen geprüft, die das Programm selbst berechnet \
         hat, und ist nicht an realen validiert; was von seinem Modell bekannt ist, steht in Abschnitt 7.",
     known_error_driven: "Das Modell wurde mit Mehrkörpermodellen von Fahrzeugen verglichen; seine bekannten Fehler stehen \
@@ -195,7 +206,8 @@ const DE: OpinionWords = OpinionWords {
         jedem davon ändert, wurde nicht berechnet.",
     impact_hinges: "Der Impuls folgt aus Massen, Geschwindigkeiten, Kontaktort, Stoßziffer und Reibbeiwert in Abschnitt \
         3; wie stark er sich mit jedem davon ändert, wurde nicht berechnet.",
-    speed_hinges: "{name}: Geschwindigkeit des gestoßenen Fahrzeugs {struck}, des stoßenden {striking}.",
-    car_hinges: "{name}: Geschwindigkeit des Fahrzeugs {speed}.",
+    speed_hinges: "{name}, soweit die Spuren dies offenlassen: Geschwindigkeit des gestoßenen Fahrzeugs {struck}, des \
+        stoßenden {striking}.",
+    car_hinges: "{name}, soweit die Spuren dies offenlassen: Geschwindigkeit des Fahrzeugs {speed}.",
     share_hinges: "{name}: {place} der Varianz des Endorts, {heading} der des Endwinkels.",
 };

@@ -22,6 +22,8 @@ use impactlab_networks::response::ResponseModel;
 
 /// Share of the draws with a scale that is cut off from which on it is said.
 const MOST_CLAMPED: f64 = 0.1;
+/// That from which on it is a warning: most draws follow a contact that neither asks for.
+const MOSTLY_CLAMPED: f64 = 0.5;
 
 /// Two vehicles that are followed through all contacts, as the simulation has placed them.
 #[derive(Debug, Clone, Copy)]
@@ -96,7 +98,8 @@ impl<'a> Both<'a> {
                  abgeschnitten: Kraft und Kontaktgesetz passen nicht zusammen",
             )
             .with(PhraseValue::Share(contacts.clamped_share));
-            Caveat::new(CaveatKind::Note, text)
+            let is_most = contacts.clamped_share > MOSTLY_CLAMPED;
+            Caveat::new(if is_most { CaveatKind::Disagreement } else { CaveatKind::Note }, text)
         });
         uncorrected.chain(drawn_drivers(self.vehicles)).chain(clamped).collect()
     }

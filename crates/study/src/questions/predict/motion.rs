@@ -12,7 +12,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_count};
 use crate::caveats::assumed::{self, contact_default};
-use crate::caveats::driver::open_driver;
+use crate::caveats::driver::open_drivers;
 use crate::caveats::restrictions;
 use crate::caveats::unused::{by_forecast, contact_by_force_network, slope_by_network};
 use crate::questions::predict::both_vehicles::{Both, with_contact_law};
@@ -308,7 +308,7 @@ impl Question for PredictMotionRequest {
         };
         let provenance = self.provenance(beside.model, library)?;
         caveats.extend(beside.caveats);
-        caveats.extend(open_driver(&self.motion)?);
+        caveats.extend(open_drivers(&self.motion)?);
         caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
         let predicted = match &forecast.both {

@@ -394,13 +394,16 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase 
         _ => {
             let quantity = latent.quantity();
             let [low, high] =
-                [-Z_95, Z_95].map(|z| PhraseValue::significant(quantity, distribution.at(z)));
+                [-Z_95, Z_95].map(|z| PhraseValue::three_digits(quantity, distribution.at(z)));
             let (range, [low, high]) = match quantity {
                 Quantity::Angle => {
-                    let range = Phrase::new("{0} {1} to {2}°", "{0} {1}° bis {2}°");
+                    let range = Phrase::new("{0}, 90 %: {1} to {2}°", "{0}, 90 %: {1}° bis {2}°");
                     (range, [low, high].map(|end| end.in_unit("deg").bare()))
                 }
-                _ => (Phrase::new("{0} {1} to {2}", "{0} {1} bis {2}"), [low.bare(), high]),
+                _ => (
+                    Phrase::new("{0}, 90 %: {1} to {2}", "{0}, 90 %: {1} bis {2}"),
+                    [low.bare(), high],
+                ),
             };
             range.with(PhraseValue::Term(latent.label().to_owned())).with(low).with(high)
         }
@@ -474,7 +477,7 @@ mod tests {
             assumptions(evidence, &model).iter().map(Caveat::to_string).collect::<Vec<_>>()
         };
         let has = |texts: &[String], part: &str| texts.iter().any(|text| text.contains(part));
-        assert!(has(&assumed(&evidence), "brakes from 0.4"), "{:?}", assumed(&evidence));
+        assert!(has(&assumed(&evidence), "brakes from, 90 %: 0.4"), "{:?}", assumed(&evidence));
         let (none, drawn) = ("no anti-lock brakes", "anti-lock system with");
         assert!(has(&assumed(&evidence), none) && !has(&assumed(&evidence), drawn));
         let mut said = evidence.clone();

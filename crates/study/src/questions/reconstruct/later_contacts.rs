@@ -101,7 +101,7 @@ impl LaterContactsReport {
                      striking car coasts; later contacts are not followed, since nothing of its way is \
                      among the evidence ([striking_rest], [[striking_mark]], [striking_edr])",
                     "Nach dem ersten Kontakt allein treffen sich die Fahrzeuge in {0} der Bewegungen \
-                     wieder, wenn das stoßende Fahrzeug rollt. Spätere Kontakte sind nicht verfolgt, da \
+                     wieder, wenn das stoßende Fahrzeug ungebremst ausrollt. Spätere Kontakte sind nicht verfolgt, da \
                      Anknüpfungstatsachen zu seinem Weg fehlen ([striking_rest], [[striking_mark]], \
                      [striking_edr])",
                 )

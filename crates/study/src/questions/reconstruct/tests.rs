@@ -5,8 +5,8 @@ use crate::examples::spin;
 use crate::facts::{Term, Value};
 use crate::questions::reconstruct::assumed::assumptions;
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
-use impactlab_reconstruct::Latent;
 use impactlab_reconstruct::evidence::{Edr, Measured};
+use impactlab_reconstruct::{HingeInput, Latent};
 
 fn request(particles: usize) -> ReconstructRequest {
     let evidence = EvidenceChoice::Inline(Box::new(spin()));
@@ -47,7 +47,7 @@ fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
     let titles: Vec<_> = report.facts().into_iter().map(|table| table.title).collect();
     let place = |term: Term| titles.iter().position(|title| *title == Value::Term(term));
     assert!(place(Term::Hinges) < place(Term::Speeds), "{titles:?}");
-    assert_eq!(report.hinges[0].input, Latent::RoadFriction);
+    assert_eq!(report.hinges[0].input, HingeInput::Drawn(Latent::RoadFriction));
     // The request comes back from JSON.
     let text = serde_json::to_string(&request).unwrap();
     assert_eq!(serde_json::from_str::<ReconstructRequest>(&text).unwrap(), request);
@@ -180,7 +180,7 @@ fn a_friction_that_the_evidence_leaves_open_is_that_of_the_road() {
     let friction =
         caveats.iter().find(|caveat| caveat.to_string().contains("[road] friction")).unwrap();
     assert!(
-        friction.to_string().starts_with("assumed road friction: friction of the road 0."),
+        friction.to_string().starts_with("assumed road friction: friction of the road, 90 %: 0."),
         "{friction}"
     );
 }

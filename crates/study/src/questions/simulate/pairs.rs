@@ -94,7 +94,7 @@ impl SimulateDatasetRequest {
             (self.vehicle != VehicleChoice::Automatic)
                 .then(|| Caveat::not_used("struck vehicle", VEHICLES_OF_PAIR)),
         );
-        caveats.extend([contact_at_medians()]);
+        caveats.extend([contact_at_medians(false)]);
         let summary = |choose: fn(&ReplayedCaseReport) -> bool| {
             let chosen = cases.iter().filter(|case| choose(case));
             ErrorSummary::from_errors(chosen.map(|case| &case.error))

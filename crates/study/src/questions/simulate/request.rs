@@ -11,7 +11,7 @@ use crate::analysis::{
 };
 use crate::ask::checks::{check, check_all, check_count, check_given};
 use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
-use crate::caveats::driver::open_driver;
+use crate::caveats::driver::open_drivers;
 use crate::caveats::other_vehicle::other_vehicles;
 use crate::caveats::unused::{
     by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair, vehicle_of_fixed,
@@ -325,6 +325,11 @@ impl SimulateRequest {
         Provenance { seed, ..Provenance::default() }.with_models(model)
     }
 
+    /// What nobody has said of the drivers. That of the simulation beside a forecast is said with the forecast.
+    fn open_drivers(&self) -> Result<Vec<Caveat>, StudyError> {
+        if self.alone { Ok(Vec::new()) } else { open_drivers(self) }
+    }
+
     /// What restricts the answer.
     ///
     /// - `overlap`: that the outlines of the scenario overlap, if they do.
@@ -337,8 +342,10 @@ impl SimulateRequest {
         let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
         let cut = recorded.and_then(restrictions::cut_record_caveat);
         let simulated = restrictions::simulation_caveats(report, self.until_rest);
+        let is_fixed =
+            analysis.striking.as_ref().is_some_and(|it| it.start.vehicle.fixed.is_some());
         let at_medians =
-            analysis.pair.as_ref().filter(|_| !self.alone).map(|_| contact_at_medians());
+            analysis.pair.as_ref().filter(|_| !self.alone).map(|_| contact_at_medians(is_fixed));
         let slope = restrictions::slope_caveat(&analysis.vehicle.slope);
         simulated.into_iter().chain(overlap).chain(cut).chain(slope).chain(at_medians)
     }
@@ -454,8 +461,7 @@ impl Question for SimulateRequest {
         (report.momentum, report.rival) = (momentum, beside.rival);
         report.uncertainty = self.uncertainty(&settings, &analysis, &analyse, &mut caveats);
         let provenance = self.provenance(&report, beside.model);
-        // That of the simulation beside a forecast is said with the forecast.
-        caveats.extend((!self.alone).then(|| open_driver(self)).transpose()?.flatten());
+        caveats.extend(self.open_drivers()?);
         caveats.extend(self.restrictions(&report, &analysis, overlap).chain(beside.caveats));
         let report = Answer { report, caveats, provenance };
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))

@@ -186,8 +186,28 @@ impl<'a> Flow<'a> {
             }
             [Block::Picture(picture), ..] => self.scene_pt(picture) + 8.0,
             [Block::Table(table), ..] => beginning_pt(self, table) + 8.0,
+            [Block::List { items }, behind @ ..] => {
+                self.list_to_end_pt(items, behind).unwrap_or(BELOW_HEADING_PT)
+            }
             _ => BELOW_HEADING_PT,
         }
+    }
+
+    /// Room of a list with the paragraphs behind it, which stay together if half a page is enough: a place for
+    /// a signature alone on a page belongs to nothing.
+    fn list_to_end_pt(&self, items: &[String], behind: &[Block]) -> Option<f32> {
+        let height_pt = |text: &str, left_pt: f32| {
+            let lines = lines(text, self.fonts, BODY_PT, self.width_pt() - left_pt);
+            lines.len() as f32 * BODY_PT * LEADING
+        };
+        let list_pt: f32 = items.iter().map(|item| height_pt(item, 12.0) + 1.5).sum();
+        let paragraph_pt = |block: &Block| match block {
+            Block::Paragraph { text } => Some(height_pt(text, 0.0) + 4.0),
+            _ => None,
+        };
+        let behind_pt: f32 = behind.iter().map_while(paragraph_pt).sum();
+        let all_pt = list_pt + 4.0 + behind_pt;
+        (behind_pt > 0.0 && all_pt <= 0.5 * self.page_pt()).then_some(all_pt)
     }
 
     pub(super) fn block(&mut self, block: &Block, behind: &[Block]) {
@@ -204,7 +224,11 @@ impl<'a> Flow<'a> {
                 self.space(4.0);
             }
             Block::Notice { text } => self.notice(text, body),
-            Block::List { items } => self.list(items, body),
+            Block::List { items } => {
+                let together_pt = self.list_to_end_pt(items, behind);
+                self.need(together_pt.unwrap_or_default());
+                self.list(items, body);
+            }
             Block::Table(table) => {
                 self.space(2.0);
                 flow_table(self, table);
@@ -318,6 +342,32 @@ mod tests {
             assert!(top >= 50.0 && bottom <= height_pt - HIGH_MARGIN_PT + 1.0, "{item:?}");
         }
         assert!(headers > 10, "the header of the table is repeated {headers} times");
+    }
+
+    /// The place for a signature stood alone on the second page of an opinion.
+    #[test]
+    fn a_signature_stands_on_the_page_of_what_is_signed() {
+        let fonts = Fonts::load().unwrap();
+        for n_lines in 20..60 {
+            let mut blocks: Vec<Block> = (0..n_lines).map(|_| Block::paragraph("line")).collect();
+            blocks.push(Block::heading(2, "Expert"));
+            blocks.push(Block::List { items: vec!["name".to_owned(), "instruction".to_owned()] });
+            blocks.push(Block::paragraph("Place, date, signature"));
+            let document = document(Paper::A4, blocks);
+            let flow = Flow::from_document(&document, &fonts).unwrap();
+            let page_of = |wanted: &str| {
+                flow.pages.iter().position(|page| {
+                    let is_it =
+                        |item: &Item| matches!(item, Item::Text { text, .. } if text == wanted);
+                    page.items.iter().any(is_it)
+                })
+            };
+            let pages = ["Expert", "name", "Place, date, signature"].map(page_of);
+            assert!(
+                pages[0].is_some() && pages.iter().all(|page| *page == pages[0]),
+                "{n_lines}: {pages:?}"
+            );
+        }
     }
 
     /// The last row of a table stood alone on the next page.
