@@ -103,7 +103,11 @@ impl RecorderRecord {
         time_s: &[Option<f64>],
         doubts: &mut Vec<String>,
     ) {
-        let speed = table.column(Quantity::Speed, doubts, is_speed).unwrap_or_default();
+        let speed = table.column(Quantity::Speed, doubts, is_speed);
+        if speed.is_none() {
+            doubts.extend(table.other_speeds());
+        }
+        let speed = speed.unwrap_or_default();
         let steering = table.column(Quantity::Angle, doubts, |key| key.contains("steering"));
         let is_yaw_rate = |key: &str| key.contains("yawrate") && !has(key, &["desired", "target"]);
         let yaw_rate = table.column(Quantity::AngularVelocity, doubts, is_yaw_rate);
@@ -240,6 +244,19 @@ impl Table563<'_> {
             letters_and_digits(name.rsplit_once('[').map_or(name.as_str(), |(bare, _)| bare))
         };
         self.header.iter().map(bare).collect()
+    }
+
+    /// That the columns of a speed are not of that of the car; `None` if there are none.
+    fn other_speeds(&self) -> Option<String> {
+        let columns = self.keys().into_iter().zip(&self.header);
+        let of_others = columns.filter(|(key, name)| {
+            let has_unit = matches!(trailing_unit(name, Quantity::Speed), Ok(Some(_)));
+            has_unit && key.contains("speed") && !is_delta_v(key)
+        });
+        let names: Vec<String> = of_others.map(|(_, name)| quoted(name)).collect();
+        let said =
+            "may not have the speed of the car and is not read; call its column Speed if it has";
+        (!names.is_empty()).then(|| format!("{} {said}", names.join(", ")))
     }
 
     /// Columns of a change of velocity that are not read, with the reason.

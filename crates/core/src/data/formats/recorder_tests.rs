@@ -275,6 +275,22 @@ fn a_speed_is_that_of_the_car_and_a_brake_that_of_the_driver() {
     assert!(open.before.is_braked.is_empty() && said(&open, "on or off throughout"), "{open:?}");
 }
 
+/// A speed by satellites, or of a wheel, is not that of the car as its recorder has it.
+#[test]
+fn a_speed_that_may_not_be_that_of_the_car_is_said() {
+    let row = |at: i32| format!("{},60,{}\n", 10 * at, -4 * at);
+    let rows: String = (-3..12).map(row).collect();
+    let text =
+        |name: &str| format!("Time [ms],{name} [km/h],\"Delta-V, longitudinal [km/h]\"\n{rows}");
+    let record = read(&text("GPS Speed"), None).unwrap();
+    assert!(record.speed_before.is_none(), "{record:?}");
+    let is_said =
+        |doubt: &String| doubt.starts_with("\"GPS Speed") && doubt.contains("is not read");
+    assert!(record.doubts.iter().any(is_said), "{record:?}");
+    let own = read(&text("Vehicle Speed"), None).unwrap();
+    assert!(!own.doubts.iter().any(|doubt| doubt.contains("is not read")), "{own:?}");
+}
+
 /// A change from sample to sample is none over time, and a direction that is not named is none that is known.
 #[test]
 fn a_change_of_velocity_that_is_not_read_is_said() {
