@@ -4,7 +4,7 @@
 //! the scenario has it. Where the scenario does not say what the driver of the striking car does, he turns
 //! in, keeps the speed, and straightens and brakes once the struck car has turned, or after two seconds.
 
-use impactlab_core::collision::{ContactLocation, Scenario, Side};
+use impactlab_core::collision::{ContactLocation, Scenario};
 use impactlab_core::numerics::{latin_normals, random_stream};
 use impactlab_core::ranges::{CONTACT_OFFSET, ROAD_FRICTION, Range, SPEED, YAW_RATE};
 use impactlab_core::vehicle::{
@@ -132,11 +132,7 @@ impl PitInput {
     /// The side on which the struck car of a scenario is hit: 1 if the striking car turns to its left, −1
     /// if to its right; `None` if it is no side.
     pub(crate) fn side(scenario: &Scenario) -> Option<f64> {
-        match scenario.contact.location {
-            ContactLocation::Side { side: Side::Right, .. } => Some(1.0),
-            ContactLocation::Side { side: Side::Left, .. } => Some(-1.0),
-            _ => None,
-        }
+        scenario.struck_from_beside().map(|(side, _)| side)
     }
 }
 

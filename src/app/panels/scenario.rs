@@ -330,7 +330,8 @@ fn approach_form(ui: &mut Ui, scenario: &mut Scenario, units: UnitSystem) {
     let Some(mut approach) = scenario.side_approach() else { return };
     let heading = egui::CollapsingHeader::new("Approach").default_open(true);
     let shown = heading.show(ui, |ui| {
-        let rear = CONTACT_OFFSET.within([0.0, scenario.struck.length_m]);
+        let half_m = scenario.struck.length_m / 2.0;
+        let rear = CONTACT_OFFSET.within([CONTACT_OFFSET.low + half_m, CONTACT_OFFSET.high]);
         let fields = [
             ("Contact ahead of rear bumper", &mut approach.ahead_of_rear_m, rear),
             ("Striking vehicle faster by", &mut approach.faster_m_s, SPEED),

@@ -39,8 +39,9 @@ impl Scenario {
         self.striking.vy_world_m_s = self.struck.vy_world_m_s + along * sin + across * cos;
     }
 
-    /// 1 if the striking vehicle comes from the right, −1 from the left, and the contact's offset, m.
-    fn struck_from_beside(&self) -> Option<(f64, f64)> {
+    /// 1 if a vehicle strikes the right side of the struck one, so that it moves to the latter's left, −1 if it
+    /// strikes the left side, and the contact's offset from the middle of the side, m; `None` if neither.
+    pub fn struck_from_beside(&self) -> Option<(f64, f64)> {
         match self.contact.location {
             _ if self.striking.fixed.is_some() => None,
             ContactLocation::Side { side: Side::Right, offset_m } => Some((1.0, offset_m)),
