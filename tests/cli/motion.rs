@@ -93,6 +93,12 @@ fn a_wall_is_solved_and_followed_and_the_networks_do_not_know_it() {
     assert!((delta_v - 1.1 * 50.0 / 3.6).abs() < 0.01, "{delta_v} m/s");
     assert_eq!(impact["rival"], Value::Null);
     assert!(impact["caveats"].to_string().contains("does not move"), "{}", impact["caveats"]);
+    // What does not move is no vehicle that has a velocity afterwards.
+    assert_eq!(impact["fixed"], "wall");
+    let printed = String::from_utf8(program().args(["impact", &scenario]).output().unwrap().stdout);
+    let printed = printed.unwrap();
+    assert!(printed.contains("Struck vehicle after the impact"), "{printed}");
+    assert!(!printed.contains("striking vehicle"), "{printed}");
     let simulated = answer(&["simulate", "--scenario", &scenario]);
     let x_m = simulated["end"]["x_m"].as_f64().unwrap();
     assert!((-8.0..0.5).contains(&x_m), "it rolls back from the wall: {x_m} m");

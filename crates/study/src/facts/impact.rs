@@ -33,9 +33,9 @@ impl ImpactReport {
             Term::ClockDirection,
         ];
         // An object that does not move has no motion after the impact.
-        let columns = match self.fixed {
-            Some(_) => &[Term::StruckVehicle][..],
-            None => &[Term::StruckVehicle, Term::StrikingVehicle],
+        let (title, columns) = match self.fixed {
+            Some(_) => (Term::StruckAfterImpact, &[Term::StruckVehicle][..]),
+            None => (Term::VehiclesAfterImpact, &[Term::StruckVehicle, Term::StrikingVehicle][..]),
         };
         let both = terms.into_iter().zip(struck.into_iter().zip(striking));
         let row = |(term, (a, b))| {
@@ -43,7 +43,7 @@ impl ImpactReport {
             Fact::row(Value::Term(term), values)
         };
         let rows = both.map(row).collect();
-        let vehicles = FactTable::new(Term::VehiclesAfterImpact, rows).with_columns(columns);
+        let vehicles = FactTable::new(title, rows).with_columns(columns);
         [FactTable::new(Term::Impact, self.contact()), vehicles]
     }
 

@@ -132,6 +132,8 @@ terms! {
     EnergyLoss: "energy lost in the contact", "Energieverlust im Stoß";
     VehiclesAfterImpact: "Both vehicles after the impact, world axes",
         "Beide Fahrzeuge nach dem Stoß, Weltachsen";
+    StruckAfterImpact: "Struck vehicle after the impact, world axes",
+        "Gestoßenes Fahrzeug nach dem Stoß, Weltachsen";
     DeltaV: "change of velocity Δv", "Geschwindigkeitsänderung Δv";
     VelocityAfter: "velocity after the impact", "Geschwindigkeit nach dem Stoß";
     YawRateAfter: "yaw rate after the impact", "Gierrate nach dem Stoß";
