@@ -184,6 +184,20 @@ fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
     }
 }
 
+/// There is a course for each pair of bodies that the vehicles may have, with and without a corner that hooks.
+#[test]
+fn the_likeliest_courses_of_a_contact_are_told_and_what_the_others_have() {
+    let printed =
+        ok(program().args(["predict", "force", "--scenario", SCENARIO]).output().unwrap());
+    let rows = printed.lines().skip_while(|line| *line != "Possible courses of the contact");
+    let rows: Vec<&str> = rows.skip(2).take_while(|line| !line.is_empty()).collect();
+    assert_eq!(rows.len(), 9, "{rows:?}");
+    assert!(rows[8].contains("the others together"), "{rows:?}");
+    let chance = |row: &&str| row.split(' ').next().unwrap().parse::<f64>().unwrap();
+    let sum: f64 = rows.iter().map(chance).sum();
+    assert!((sum - 100.0).abs() < 0.5, "{rows:?}");
+}
+
 /// With e = 0, 0.15 and 0.8 the impulse was the same where the momentum solution takes over, and one report
 /// held two momentum solutions.
 #[test]

@@ -8,6 +8,10 @@ use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::Measured;
 
+/// Courses of a contact that are told one by one; where bodies or contact are open there is one for each of
+/// those that they may be.
+const MOST_COURSES: usize = 8;
+
 impl PredictForceReport {
     /// What the answer says: the force with its intervals, and the courses that the contact may take.
     pub fn facts(&self) -> Vec<FactTable> {
@@ -61,7 +65,7 @@ impl PredictForceReport {
         facts
     }
 
-    /// The components of the mixture, if there are several.
+    /// The likeliest components of the mixture, if there are several, and what the others have together.
     pub fn course_table(&self) -> Option<FactTable> {
         let columns = [Term::Impulse, Term::PeakForce, Term::ContactDuration];
         let row = |mode: &crate::analysis::Mode| {
@@ -72,7 +76,14 @@ impl PredictForceReport {
             ];
             Fact::row(Value::Chance(mode.weight, None), values)
         };
-        let rows = self.modes.iter().map(row).collect();
+        let (told, others) = self.modes.split_at(self.modes.len().min(MOST_COURSES));
+        let rest = || {
+            let weight = others.iter().map(|mode| mode.weight).sum();
+            let none = Value::Term(Term::NoImpulse);
+            let values = vec![Value::Term(Term::OtherCourses), none.clone(), none];
+            Fact::row(Value::Chance(weight, None), values)
+        };
+        let rows = told.iter().map(row).chain((!others.is_empty()).then(rest)).collect();
         let table = FactTable::new(Term::ForceModes, rows)
             .with_rows(Term::Probability)
             .with_columns(&columns);

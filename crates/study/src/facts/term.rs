@@ -353,6 +353,7 @@ terms! {
         "offen, aus dem der Trainingsfälle gezogen";
     ForceModes: "Possible courses of the contact", "Mögliche Verläufe des Kontakts",
         "Components of the mixture, each with its mean curve";
+    OtherCourses: "the others together", "die übrigen zusammen";
     Probability: "probability", "Wahrscheinlichkeit";
     Impulse: "impulse", "Impuls";
     // The predicted motion.
