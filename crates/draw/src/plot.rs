@@ -8,8 +8,8 @@ use egui::{
     Vec2, Vec2b, pos2,
 };
 use egui_plot::{
-    Arrows, FilledArea, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage, PlotPoint,
-    PlotPoints, PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage, PlotMemory,
+    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
 use crate::axis_label::{label_in_part, label_that_fits, seen_part, shortened};
@@ -142,7 +142,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         Some(_) => " ".to_owned(),
         None => label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT),
     };
-    let mut plot = plot_with_axes(figure, options, [x_label, y_label]);
+    let id = ui.make_persistent_id(options.plot_name(figure));
+    let is_first_time = PlotMemory::load(ui.ctx(), id).is_none();
+    let mut plot = plot_with_axes(figure, options, [x_label, y_label]).id(id);
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
     }
@@ -154,7 +156,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             .link_axis(group, Vec2b::new(true, false))
             .link_cursor(group, Vec2b::new(true, false));
     }
-    if options.reset {
+    if options.reset && ui.ctx().current_pass_index() == 0 {
         plot = plot.reset();
     }
     for element in &figure.elements {
@@ -184,6 +186,10 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         let picking = plot_ui.response().is_pointer_button_down_on();
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
+    if is_first_time || options.reset {
+        // The axes take the room that they took the last time: none in this pass.
+        ui.ctx().request_discard("axes without room");
+    }
     let has_axes = response.response.rect.left() > left;
     if let Some(seen) = seen.filter(|_| has_axes) {
         label_in_part(ui, &figure.y, left, seen);
@@ -460,5 +466,46 @@ mod tests {
         assert!(reaches(&figure, 2.0));
         figure.elements.clear();
         assert!(reaches(&figure, 2.0));
+    }
+
+    /// Ends of the ticks and beginning of the label of the horizontal axis in the frame that is drawn.
+    fn ticks_and_label(context: &egui::Context, figure: &Figure) -> [f32; 2] {
+        let size = Vec2::new(500.0, 300.0);
+        let input = egui::RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            ..egui::RawInput::default()
+        };
+        let options = FigureOptions { reset: true, ..FigureOptions::default() };
+        let output = context.run_ui(input, |ui| {
+            figure_ui(ui, figure, &options);
+        });
+        let places: Vec<(String, Rect)> = output
+            .shapes
+            .iter()
+            .filter_map(|clipped| match &clipped.shape {
+                egui::Shape::Text(text) => {
+                    Some((text.galley.text().to_owned(), text.visual_bounding_rect()))
+                }
+                _ => None,
+            })
+            .collect();
+        let place = |wanted: &str| {
+            let is_wanted = |(text, _): &&(String, Rect)| text.contains(wanted);
+            places.iter().rfind(is_wanted).unwrap_or_else(|| panic!("no {wanted}: {places:?}")).1
+        };
+        [place("100").bottom(), place("along").top()]
+    }
+
+    #[test]
+    fn the_label_of_an_axis_stands_below_its_ticks_from_the_first_frame_on() {
+        let axis = |title| Axis::shown(title, Quantity::Time, UnitSystem::Si);
+        let points = (0..5).map(|i| [50.0 * f64::from(i), f64::from(i)]).collect();
+        let curve = FigureElement::line("F", Role::Resultant, points);
+        let figure = Figure::new("figure", [axis("along"), axis("across")], vec![curve]);
+        let context = egui::Context::default();
+        for _ in 0..3 {
+            let [ticks_end, label_begins] = ticks_and_label(&context, &figure);
+            assert!(ticks_end <= label_begins, "{ticks_end} {label_begins}");
+        }
     }
 }
