@@ -2,9 +2,11 @@
 
     python3 cars.py [--cars 60] [--seed 20261128]       prints the sample
 
-A design has 60 cars; car i of a seed is always the same one, however many are asked for. Ranges and how they
-hang together follow the data sheets of some thirty cars of 2003 to 2021: a class (`classes.json`) says what
-is tall, heavy and long at once.
+Car i of a seed is always the same one, however many are asked for. Ranges and how they hang together follow the
+data sheets of some thirty cars of 2003 to 2021: a class says what is tall, heavy and long at once. The first
+design has 60 cars (`classes.json`). Those after it have 24 each (`classes-wide.json`), for what the first one
+leaves out: the dynamic index of the cars that were measured (1.1 in the median of Heydinger 1999; the first one
+has 0.85 to 1.10), wheelbases up to 3.8 m, wide tracks, soft front tires.
 """
 
 import argparse
@@ -18,16 +20,15 @@ from scipy.stats import qmc
 
 import layouts
 
-CLASSES_FILE = Path(__file__).resolve().parent / "classes.json"
-# Cars of one Latin hypercube; more cars take further designs.
-DESIGN_CARS = 60
+FOLDER = Path(__file__).resolve().parent
+# Cars of the first Latin hypercube, and of each of those after it.
+DESIGN_CARS, WIDE_CARS = 60, 24
 FRONT_DRIVEN, REAR_DRIVEN = 0, 1
 # Largest height of the centre of gravity over the track: a taller car falls over in a curve.
 TALLEST_OVER_TRACK = 0.535
 # The rear axle is stiffer than the front one by so much, so that every car is stable.
 REAR_OVER_FRONT_STIFFNESS = (1.20, 1.50)
-CORNERING_STIFFNESS_FRONT = (10.0, 17.5)
-CORNERING_STIFFNESS_REAR = (13.0, 23.0)
+LARGEST_REAR_STIFFNESS = 23.0
 RIDE_FREQUENCY_HZ = (1.05, 1.60)
 # From this mass on the inner joints of the E90 rear tie rods are raised: less roll oversteer.
 HEAVY_KG, TIE_ROD_RAISE_M = 1500.0, 0.006
@@ -39,6 +40,7 @@ class CarClass:
 
     - `n_of_design`: how many cars of a design are of the class.
     - `cornering_stiffness_over_load`: of the front tires, 1/rad.
+    - `least_rear_stiffness_over_load`: of the rear tires, 1/rad.
     - `bar_over_wheel_rate`: front anti-roll bar over the wheel rate of the springs.
     - `front_driven_share`: share of the cars whose front axle is driven.
     - `pairs`: plausible pairs of axles (front, rear).
@@ -54,13 +56,18 @@ class CarClass:
     drag_area_m2: tuple
     yaw_inertia_ratio: tuple
     cornering_stiffness_over_load: tuple
+    least_rear_stiffness_over_load: float
     bar_over_wheel_rate: tuple
     front_driven_share: float
     spring_free_travel_m: float
     pairs: tuple
 
 
-CLASSES = {name: CarClass(**ranges) for name, ranges in json.loads(CLASSES_FILE.read_text()).items()}
+def _classes(file):
+    return {name: CarClass(**ranges) for name, ranges in json.loads((FOLDER / file).read_text()).items()}
+
+
+CLASSES, WIDE_CLASSES = _classes("classes.json"), _classes("classes-wide.json")
 
 # What a car is made of; a coordinate of the hypercube each.
 COORDINATES = ("mass", "wheelbase", "track", "track_difference", "front_share", "cg_height", "yaw_inertia",
@@ -146,27 +153,32 @@ def sample(n, seed):
 
 
 def car(index, seed):
-    block, row = divmod(index, DESIGN_CARS)
-    kinds, shares = _design(seed, block)
-    return _car(index, kinds[row], dict(zip(COORDINATES, shares[row])))
+    if index < DESIGN_CARS:
+        classes, n_cars, block, row = CLASSES, DESIGN_CARS, 0, index
+    else:
+        classes, n_cars = WIDE_CLASSES, WIDE_CARS
+        block, row = divmod(index - DESIGN_CARS, WIDE_CARS)
+        block += 1
+    kinds, shares = _design(seed, block, n_cars)
+    return _car(index, kinds[row], classes[kinds[row]], dict(zip(COORDINATES, shares[row])))
 
 
 @lru_cache
-def _design(seed, block):
+def _design(seed, block, n_cars):
     """Classes and coordinates of the cars of a design. The cars of a class spread over every range."""
+    classes = WIDE_CLASSES if block else CLASSES
     rng = np.random.default_rng([seed, block])
-    kinds = [name for name, of in CLASSES.items() for _ in range(of.n_of_design)]
-    assert len(kinds) == DESIGN_CARS, "the classes fill the design"
-    shares = np.empty((DESIGN_CARS, len(COORDINATES)))
-    for name in CLASSES:
+    kinds = [name for name, of in classes.items() for _ in range(of.n_of_design)]
+    assert len(kinds) == n_cars, "the classes fill the design"
+    shares = np.empty((n_cars, len(COORDINATES)))
+    for name in classes:
         rows = [row for row, kind in enumerate(kinds) if kind == name]
         shares[rows] = qmc.LatinHypercube(d=len(COORDINATES), rng=rng).random(len(rows))
-    order = rng.permutation(DESIGN_CARS)
+    order = rng.permutation(n_cars)
     return [kinds[row] for row in order], shares[order]
 
 
-def _car(index, kind, u):
-    of = CLASSES[kind]
+def _car(index, kind, of, u):
 
     def with_mass(name):
         """Long, wide cars on large tires are the heavy ones of a class."""
@@ -180,7 +192,7 @@ def _car(index, kind, u):
     front, rear = of.pairs[min(len(of.pairs) - 1, int(len(of.pairs) * u["pair"]))]
     front_stiffness = between(of.cornering_stiffness_over_load, u["stiffness"])
     rear_stiffness = front_stiffness * between(REAR_OVER_FRONT_STIFFNESS, u["stiffness_ratio"])
-    rear_stiffness = clipped(rear_stiffness, CORNERING_STIFFNESS_REAR)
+    rear_stiffness = clipped(rear_stiffness, (of.least_rear_stiffness_over_load, LARGEST_REAR_STIFFNESS))
     front_frequency = between((1.05, 1.45), u["front_frequency"])
     rear_frequency = clipped(front_frequency * between((1.04, 1.20), u["rear_frequency"]), RIDE_FREQUENCY_HZ)
     front_bar = between(of.bar_over_wheel_rate, u["front_bar"])

@@ -52,25 +52,28 @@ class Sample(unittest.TestCase):
         self.assertNotEqual(motions.sample(car, SEED), motions.sample(car, SEED + 1))
 
     def test_a_car_is_the_same_however_many_are_asked_for(self):
-        self.assertEqual(cars.sample(3, SEED)[2], cars.sample(70, SEED)[2])
-        self.assertNotEqual(asdict(cars.car(2, SEED)), asdict(cars.car(62, SEED)))
+        self.assertEqual(cars.sample(3, SEED)[2], cars.sample(90, SEED)[2])
+        self.assertEqual(cars.sample(62, SEED)[61], cars.sample(90, SEED)[61])
+        self.assertNotEqual(asdict(cars.car(62, SEED)), asdict(cars.car(86, SEED)))
 
     def test_cars_are_plausible(self):
-        for car in cars.sample(120, SEED):
+        for car in cars.sample(cars.DESIGN_CARS + 2 * cars.WIDE_CARS, SEED):
             with self.subTest(car=car.name, kind=car.kind):
-                self.assertTrue(850 <= car.mass_kg <= 2800)
+                is_wide = car.index >= cars.DESIGN_CARS
+                self.assertTrue(850 <= car.mass_kg <= (2950 if is_wide else 2800))
                 self.assertTrue(0.43 <= car.front_share <= 0.63)
-                self.assertTrue(0.46 <= car.cg_height_m <= 0.80)
-                self.assertTrue(0.85 <= car.yaw_inertia_ratio <= 1.12)
+                self.assertTrue(0.44 <= car.cg_height_m <= 0.80)
+                self.assertTrue(0.85 <= car.yaw_inertia_ratio <= (1.28 if is_wide else 1.12))
                 self.assertLessEqual(car.cg_height_m, cars.TALLEST_OVER_TRACK * car.track_front_m + 1e-9)
                 front, rear = car.cornering_stiffness_over_load
-                self.assertTrue(10.0 <= front <= 17.5 and 13.0 <= rear <= 23.0)
+                self.assertTrue((8.4 if is_wide else 10.0) <= front <= 17.5)
+                self.assertTrue((11.0 if is_wide else 13.0) <= rear <= 23.0)
                 self.assertTrue(1.15 <= rear / front <= 1.5)
                 self.assertTrue(all(1.05 <= frequency <= 1.6 for frequency in car.ride_frequencies_hz))
-                self.assertLess(car.half_width_m * 2, 2.1)
-                self.assertTrue(3.3 < car.length_m < 6.0, car.length_m)
+                self.assertLess(car.half_width_m * 2, 2.15)
+                self.assertTrue(3.3 < car.length_m < 6.7, car.length_m)
                 # What is sampled as the roll inertia is that of a body of this width and height.
-                self.assertTrue(0.24 < car.roll_gyration2_m2 < 0.60)
+                self.assertTrue(0.24 < car.roll_gyration2_m2 < 0.68)
 
     def test_the_sample_covers_its_ranges(self):
         sample = cars.sample(cars.DESIGN_CARS, SEED)
@@ -78,6 +81,13 @@ class Sample(unittest.TestCase):
         self.assertTrue(min(masses) < 950 and max(masses) > 2500)
         self.assertGreaterEqual(len({(car.front, car.rear) for car in sample}), 12)
         self.assertEqual({car.driven_axle for car in sample}, {0, 1})
+
+    def test_later_designs_have_what_the_first_one_leaves_out(self):
+        wide = [cars.car(cars.DESIGN_CARS + i, SEED) for i in range(cars.WIDE_CARS)]
+        self.assertGreater(max(car.yaw_inertia_ratio for car in wide), 1.22)
+        self.assertGreater(max(car.wheelbase_m for car in wide), 3.7)
+        self.assertGreater(max(car.track_front_m for car in wide), 1.74)
+        self.assertLess(min(car.cornering_stiffness_over_load[0] for car in wide), 9.2)
 
     def test_tall_cars_are_no_saloons(self):
         for car in cars.sample(cars.DESIGN_CARS, SEED):
@@ -87,7 +97,7 @@ class Sample(unittest.TestCase):
                 self.assertGreater(car.cg_height_m, 0.64)
 
     def test_pairs_of_axles_are_layouts(self):
-        for of in cars.CLASSES.values():
+        for of in (*cars.CLASSES.values(), *cars.WIDE_CLASSES.values()):
             for front, rear in of.pairs:
                 self.assertIn(front, layouts.FRONTS)
                 self.assertIn(rear, layouts.REARS)
