@@ -185,7 +185,8 @@ impl<M: TrainedModel> TrainingStatus<M> {
             }
             Some(TrainingReport::Epoch(epoch)) => {
                 let (done, total) = epoch.progress();
-                let left = time_left(self.seconds.iter().copied(), total.saturating_sub(done));
+                let n_left = total.saturating_sub(done).div_ceil(epoch.n_at_once.max(1));
+                let left = time_left(self.seconds.iter().copied(), n_left);
                 (Some(epoch.share_done() as f32), left)
             }
         }
@@ -250,6 +251,8 @@ mod tests {
             best_epoch: None,
             training_idx: 0,
             n_trainings: 1,
+            n_done_elsewhere: 0,
+            n_at_once: 1,
         }));
         assert_eq!(status.history, std::slice::from_ref(&last));
         status.take_epochs_of(&model);

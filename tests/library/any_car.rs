@@ -299,19 +299,24 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     };
     let start = fine_tune(None, &set, &settings, &mut go_on).expect("a start");
     trainings.clear();
-    let mut fits = Vec::new();
+    let (mut fits, mut shares_done) = (Vec::new(), Vec::new());
     let mut go_on = |conditioned: &TrainingReport| {
         match conditioned {
             TrainingReport::Epoch(epoch) => {
                 trainings.push([epoch.training_idx, epoch.n_trainings]);
+                shares_done.push(epoch.share_done());
             }
             TrainingReport::Fit(fit) => fits.push(fit.clone()),
         }
         ControlFlow::Continue(())
     };
     let model = train_fleet(&start, &set, &settings, &mut go_on).expect("a model");
+    // They run side by side, the model itself first.
+    assert_eq!(trainings.first(), Some(&[0, 5]));
+    trainings.sort_unstable();
     trainings.dedup();
     assert_eq!(trainings, [[0, 5], [1, 5], [2, 5], [3, 5], [4, 5]]);
+    assert!(shares_done.is_sorted() && shares_done.last() == Some(&1.0), "{shares_done:?}");
     assert!(fits.iter().all(|fit| fit.is_after_epochs && !fit.what.is_empty()), "{fits:?}");
     assert!(fits.is_sorted_by_key(|fit| fit.done), "{fits:?}");
     let last = fits.last().expect("what is learned after the epochs");

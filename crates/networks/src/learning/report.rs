@@ -95,6 +95,10 @@ pub struct EpochReport {
     pub training_idx: usize,
     /// Number of trainings.
     pub n_trainings: usize,
+    /// Epochs of the other trainings that are over.
+    pub n_done_elsewhere: usize,
+    /// Number of trainings that run at the same time.
+    pub n_at_once: usize,
 }
 
 /// What a progress bar or a plot shows of an epoch.
@@ -150,7 +154,7 @@ impl EpochReport {
     /// Epochs that are over and epochs at most, over all trainings.
     pub fn progress(&self) -> (usize, usize) {
         let n = self.n_in_training();
-        (self.training_idx * n + self.epoch_in_training(), self.n_trainings * n)
+        (self.n_done_elsewhere + self.epoch_in_training(), self.n_trainings * n)
     }
 
     /// Share that is done of all trainings, 0 to 1.
@@ -219,14 +223,22 @@ mod tests {
             gradient_norm: 1.0,
             seconds: Some(0.1),
         };
-        let (best_epoch, training_idx, n_trainings) = (Some(7), 0, 3);
-        EpochReport { summary, n_before: 5, n_epochs: 15, best_epoch, training_idx, n_trainings }
+        EpochReport {
+            summary,
+            n_before: 5,
+            n_epochs: 15,
+            best_epoch: Some(7),
+            training_idx: 0,
+            n_trainings: 3,
+            n_done_elsewhere: 0,
+            n_at_once: 1,
+        }
     }
 
     #[test]
     fn epochs_before_the_training_do_not_count_as_progress() {
         assert_eq!(report().progress(), (2, 30));
-        let calibration = EpochReport { training_idx: 2, ..report() };
+        let calibration = EpochReport { training_idx: 2, n_done_elsewhere: 20, ..report() };
         assert_eq!(calibration.progress(), (22, 30));
         assert!((calibration.share_done() - 22.0 / 30.0).abs() < 1e-12);
     }

@@ -1,7 +1,7 @@
 //! The memory that the settings of the response network ask for.
 
-use crate::learning::{LearningError, check_memory, sum};
-use crate::response::{N_FEATURES, ResponseConfig};
+use crate::learning::{LearningError, MAX_MEMORY_BYTES, check_memory, sum};
+use crate::response::{N_FEATURES, ResponseCase, ResponseConfig};
 
 /// Bytes of a number of the network.
 const NUMBER_BYTES: u64 = 8;
@@ -15,6 +15,16 @@ const INSTANT_BYTES: u64 = 2048;
 
 /// Instants of a simulated motion.
 const N_INSTANTS: usize = 400;
+
+/// Memory of an instant of a recorded motion while it is learned from, bytes: measured on a fleet.
+const RECORDED_INSTANT_BYTES: u64 = 2560;
+
+/// How many trainings on as many motions as these have room beside each other, one at least.
+pub(crate) fn n_trainings_in_memory(cases: &[ResponseCase]) -> usize {
+    let n_instants = cases.iter().map(|case| case.inputs.len() as u64).sum::<u64>().max(1);
+    let n = MAX_MEMORY_BYTES / n_instants.saturating_mul(RECORDED_INSTANT_BYTES);
+    usize::try_from(n).unwrap_or(usize::MAX).max(1)
+}
 
 impl ResponseConfig {
     /// Checks the memory of a training.

@@ -443,6 +443,8 @@ impl EpochLoop for ForceTrainingRun<'_> {
             best_epoch: Some(self.best_epoch),
             training_idx: 0,
             n_trainings: 1,
+            n_done_elsewhere: 0,
+            n_at_once: 1,
         }))
     }
 

@@ -8,10 +8,11 @@
 //! that is well known are calibrated. What is used is a training on all cars, whose trajectories make
 //! them known.
 
-use std::cell::Cell;
+use std::borrow::Cow;
+use std::iter;
 
-use crate::learning::{EpochReport, LearningError, TrainingProgress, TrainingReport};
-use crate::response::train::stages::fine_tune_once;
+use crate::learning::{LearningError, TrainingProgress, TrainingReport};
+use crate::response::train::side_by_side::{Training, fine_tune_side_by_side};
 use crate::response::train::strengths_over_cars::{UnseenCars, learn_population};
 use crate::response::{
     ResponseCase, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, is_same_car,
@@ -37,18 +38,23 @@ pub fn train_fleet(
     settings: &ResponseTrainSettings,
     report: &mut TrainingProgress<'_>,
 ) -> Result<ResponseModel, LearningError> {
-    let is_cut = Cell::new(false);
+    let mut is_cut = false;
     let mut on_progress = |progress: &TrainingReport| {
         let flow = report(progress);
-        is_cut.set(is_cut.get() || flow.is_break());
+        is_cut |= flow.is_break();
         flow
     };
-    let parts = train_parts(start, set, settings, &mut on_progress)?;
-    let mut last = |progress: &TrainingReport| on_progress(&numbered(progress, N_PARTS));
-    let mut model = fine_tune_once(Some(start), set, settings, &mut last)?;
-    if is_cut.get() {
+    let left_out = fleet_parts(set, settings)?;
+    // The model itself comes first: where the training is broken off, it has come furthest.
+    let whole = Training { set: Cow::Borrowed(set), settings: settings.clone() };
+    let trainings: Vec<Training<'_>> =
+        iter::once(whole).chain(trainings_of(&left_out, set, settings)).collect();
+    let mut models = fine_tune_side_by_side(start, &trainings, &mut on_progress)?.into_iter();
+    let mut model = models.next().ok_or(LearningError::TooFewCases { n_cases: 0, least: 1 })?;
+    if is_cut {
         return Ok(model);
     }
+    let parts = parts_with_models(left_out, models);
     let unseen: Vec<UnseenCars<'_>> = parts.iter().map(|part| part.unseen(set)).collect();
     learn_population(&mut model, &unseen, &set.train, report)?;
     Ok(model)
@@ -113,8 +119,8 @@ impl FleetPart {
     }
 }
 
-/// Trains a network for each part of a fleet, on what the part does not leave out. Each has a checkpoint
-/// of its own beside that of the training.
+/// Trains a network for each part of a fleet, on what the part does not leave out, side by side. Each has a
+/// checkpoint of its own beside that of the training.
 ///
 /// # Errors
 /// [`LearningError::TooFewCases`] for fewer cars than parts, and those of the trainings.
@@ -124,6 +130,20 @@ pub(crate) fn train_parts(
     settings: &ResponseTrainSettings,
     report: &mut TrainingProgress<'_>,
 ) -> Result<Vec<FleetPart>, LearningError> {
+    let left_out = fleet_parts(set, settings)?;
+    let trainings: Vec<Training<'_>> = trainings_of(&left_out, set, settings).collect();
+    let models = fine_tune_side_by_side(start, &trainings, report)?;
+    Ok(parts_with_models(left_out, models))
+}
+
+/// The parts of a fleet that can be trained on with these settings.
+///
+/// # Errors
+/// Those of the settings, and [`LearningError::TooFewCases`] for fewer cars than parts.
+fn fleet_parts(
+    set: &ResponseTrainingSet,
+    settings: &ResponseTrainSettings,
+) -> Result<Vec<LeftOut>, LearningError> {
     settings.config.check()?;
     settings.config.check_memory()?;
     let parts = parts_of(&cars_of(&set.train));
@@ -131,8 +151,16 @@ pub(crate) fn train_parts(
         let n_cases = parts.iter().map(|part| part.cars.len()).sum();
         return Err(LearningError::TooFewCases { n_cases, least: N_PARTS });
     }
-    let mut trained = Vec::new();
-    for (part, left_out) in parts.into_iter().enumerate() {
+    Ok(parts)
+}
+
+/// The training of each part, on what it does not leave out.
+fn trainings_of<'a>(
+    parts: &'a [LeftOut],
+    set: &'a ResponseTrainingSet,
+    settings: &'a ResponseTrainSettings,
+) -> impl Iterator<Item = Training<'a>> {
+    parts.iter().enumerate().map(move |(part, left_out)| {
         let is_left = |idx: &usize| {
             let mut left_out = left_out.cars.iter().flatten().chain(&left_out.motions);
             !left_out.any(|left_out| left_out == idx)
@@ -144,23 +172,16 @@ pub(crate) fn train_parts(
             name.into()
         });
         let settings = ResponseTrainSettings { checkpoint, ..settings.clone() };
-        let mut on_progress = |progress: &TrainingReport| report(&numbered(progress, part));
-        let model = fine_tune_once(Some(start), &set.part(&train), &settings, &mut on_progress)?;
-        trained.push(FleetPart { left_out, model });
-    }
-    Ok(trained)
+        Training { set: Cow::Owned(set.part(&train)), settings }
+    })
 }
 
-/// A report of one of the trainings of a fleet, which says which.
-fn numbered(report: &TrainingReport, training_idx: usize) -> TrainingReport {
-    match report {
-        TrainingReport::Epoch(epoch) => TrainingReport::Epoch(EpochReport {
-            training_idx,
-            n_trainings: N_PARTS + 1,
-            ..epoch.clone()
-        }),
-        fit => fit.clone(),
-    }
+fn parts_with_models(
+    left_out: Vec<LeftOut>,
+    models: impl IntoIterator<Item = ResponseModel>,
+) -> Vec<FleetPart> {
+    let part = |(left_out, model)| FleetPart { left_out, model };
+    left_out.into_iter().zip(models).map(part).collect()
 }
 
 /// The trajectories of each car, in the order in which the cars come first.

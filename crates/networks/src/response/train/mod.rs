@@ -15,6 +15,7 @@ mod training_data;
 mod training_run;
 
 mod fleet;
+mod side_by_side;
 mod strengths_over_cars;
 mod widths;
 

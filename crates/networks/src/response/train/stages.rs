@@ -89,7 +89,9 @@ pub fn fine_tune(
         let flow = match progress {
             TrainingReport::Epoch(epoch) => {
                 let training_idx = training_idx.get();
-                let epoch = EpochReport { training_idx, n_trainings, ..epoch.clone() };
+                let n_done_elsewhere = training_idx * epoch.n_in_training();
+                let epoch =
+                    EpochReport { training_idx, n_trainings, n_done_elsewhere, ..epoch.clone() };
                 report(&TrainingReport::Epoch(epoch))
             }
             fit => report(fit),

@@ -190,6 +190,8 @@ impl<'a> TrainingRun<'a> {
             best_epoch: None,
             training_idx: 0,
             n_trainings: 1,
+            n_done_elsewhere: 0,
+            n_at_once: 1,
         }
     }
 
