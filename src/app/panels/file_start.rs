@@ -143,7 +143,7 @@ fn speed_ui(ui: &mut Ui, start: &mut Drive, begins_m_s: Option<[f64; 2]>, units:
         };
         if assumed_ui(ui, label, &text) {
             start.speed_m_s = Some(speed_m_s);
-            start.vy_m_s = vy_m_s.filter(|_| start.vy_m_s == 0.0).unwrap_or(start.vy_m_s);
+            start.vy_m_s = start.vy_m_s.or(vy_m_s);
         }
         return;
     };
@@ -151,8 +151,8 @@ fn speed_ui(ui: &mut Ui, start: &mut Drive, begins_m_s: Option<[f64; 2]>, units:
     if leave_open_ui(ui, "Speed not known") {
         start.speed_m_s = None;
         // What was taken from this file with the speed says nothing of the next one.
-        if begins_m_s.is_some_and(|[_, vy_m_s]| vy_m_s == start.vy_m_s) {
-            start.vy_m_s = 0.0;
+        if begins_m_s.is_some_and(|[_, vy_m_s]| start.vy_m_s == Some(vy_m_s)) {
+            start.vy_m_s = None;
         }
     }
 }
@@ -216,7 +216,11 @@ mod tests {
     #[test]
     fn a_velocity_taken_from_a_file_goes_with_the_speed_but_not_one_that_was_stated() {
         let begins_m_s = [10.0, 1.5];
-        for (stated_m_s, set_m_s, left_m_s) in [(0.0, 1.5, 0.0), (-2.0, -2.0, -2.0)] {
+        for (stated_m_s, set_m_s, left_m_s) in [
+            (None, Some(1.5), None),
+            (Some(-2.0), Some(-2.0), Some(-2.0)),
+            (Some(0.0), Some(0.0), Some(0.0)),
+        ] {
             let mut harness = Harness::new_ui_state(
                 |ui, start: &mut Drive| {
                     Grid::new("start").num_columns(2).show(ui, |ui| {

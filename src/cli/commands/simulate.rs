@@ -125,9 +125,10 @@ struct SingleArgs {
     /// with which a finite-element run begins, or else 20 m/s
     #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]
     speed: Option<f64>,
-    /// Leftward speed at the start, as --speed
-    #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true, default_value = "0")]
-    vy: f64,
+    /// Leftward speed at the start, as --speed; if neither is given, that with which a
+    /// finite-element run begins, or else 0
+    #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]
+    vy: Option<f64>,
     /// Yaw rate at the start, rad/s to the left, or with a unit: 30deg/s
     #[arg(long, value_parser = number(YAW_RATE), allow_hyphen_values = true, default_value = "0")]
     yaw_rate: f64,

@@ -35,8 +35,10 @@ const STANDING_M_S: f64 = 0.5;
 pub struct Drive {
     /// Forward speed at the start, m/s.
     pub speed_m_s: Option<f64>,
-    /// Leftward speed at the start, m/s.
-    pub vy_m_s: f64,
+    /// Leftward speed at the start, m/s; where nobody says it, that with which the file of the force begins, else
+    /// 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vy_m_s: Option<f64>,
     /// Yaw rate at the start, rad/s.
     pub yaw_rate_rad_s: f64,
     /// The force on the vehicle.
@@ -68,7 +70,7 @@ impl Drive {
     /// Checks every number.
     pub(crate) fn check(&self) -> Result<(), StudyError> {
         check_given("speed_m_s", &SPEED, self.speed_m_s)?;
-        check("vy_m_s", &SPEED, self.vy_m_s)?;
+        check_given("vy_m_s", &SPEED, self.vy_m_s)?;
         check("yaw_rate_rad_s", &YAW_RATE, self.yaw_rate_rad_s)?;
         check_given("steering_ratio", &STEERING_RATIO, self.steering_ratio)?;
         check_contact(self.contact.as_ref())
@@ -138,17 +140,17 @@ impl Drive {
         caveats: &mut Caveats,
     ) -> Result<[f64; 2], StudyError> {
         if let Some(speed_m_s) = self.speed_m_s {
-            return Ok([speed_m_s, self.vy_m_s]);
+            return Ok([speed_m_s, self.vy_m_s.unwrap_or(0.0)]);
         }
         let start = loaded.and_then(|loaded| loaded.model_start.as_ref());
         let of_file = self.force.as_ref().zip(start.and_then(|start| start.of_force_m_s));
         if let Some((file, velocity_m_s)) = of_file {
             let [vx_m_s, vy_m_s] = velocity_along_x(&file.path, velocity_m_s)?;
-            // A lateral speed that is said stands in place of that of the file.
-            let of_file_m_s = if self.vy_m_s == 0.0 { vy_m_s } else { 0.0 };
+            // A lateral speed that is said stands in place of that of the file, also one of 0.
+            let of_file_m_s = if self.vy_m_s.is_none() { vy_m_s } else { 0.0 };
             let is_alike = start.is_some_and(|start| start.all_m_s.len() == 1);
             caveats.push(start_of_model(&file.title(), [vx_m_s, of_file_m_s], is_alike));
-            return Ok([vx_m_s, self.vy_m_s + of_file_m_s]);
+            return Ok([vx_m_s, self.vy_m_s.unwrap_or(of_file_m_s)]);
         }
         let reason = match start {
             Some(start) => unknown_parts(&start.all_m_s),
@@ -159,7 +161,7 @@ impl Drive {
         };
         let value = Phrase::of(PhraseValue::given(Quantity::Speed, ASSUMED_SPEED_M_S));
         caveats.push(Caveat::assumed(CaveatSubject::Speed, value, reason));
-        Ok([ASSUMED_SPEED_M_S, self.vy_m_s])
+        Ok([ASSUMED_SPEED_M_S, self.vy_m_s.unwrap_or(0.0)])
     }
 
     /// Checks that not two things steer the vehicle, nor brake or drive it.
@@ -426,4 +428,41 @@ fn wheel_history(series: &TimeSeries, vehicle: &VehicleParameters) -> WheelHisto
     };
     let wheels = (0..series.n_samples()).map(at).collect();
     WheelHistory { time_s: series.time_s().to_vec(), wheels }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::data::{Dialect, FileKind, ModelStart, Separator};
+
+    /// A lateral speed of 0 that somebody says is not one that nobody says.
+    #[test]
+    fn a_lateral_speed_is_that_of_the_file_unless_one_is_said() {
+        let begins_m_s = [12.0, -1.5];
+        let loaded = Loaded {
+            kind: FileKind::Force,
+            series: TimeSeries::default(),
+            columns: Vec::new(),
+            notes: Vec::new(),
+            dialect: Dialect { separator: Separator::Tab, decimal_comma: false, thousands: None },
+            encoding: "binary",
+            model_start: Some(ModelStart {
+                of_force_m_s: Some(begins_m_s),
+                all_m_s: vec![begins_m_s],
+            }),
+        };
+        let velocity = |speed_m_s, vy_m_s| {
+            let force = Some(SeriesFile::new("binout"));
+            let drive = Drive { speed_m_s, vy_m_s, force, ..Drive::default() };
+            let mut caveats = Caveats::default();
+            drive.velocity_m_s(Some(&loaded), &mut caveats).unwrap()
+        };
+        assert_eq!(velocity(None, None), begins_m_s);
+        assert_eq!(velocity(None, Some(0.0)), [12.0, 0.0]);
+        assert_eq!(velocity(None, Some(2.0)), [12.0, 2.0]);
+        assert_eq!(velocity(Some(20.0), None), [20.0, 0.0]);
+        assert_eq!(velocity(Some(20.0), Some(2.0)), [20.0, 2.0]);
+        let json = serde_json::to_value(Drive::default()).unwrap();
+        assert!(json.get("vy_m_s").is_none(), "{json}");
+    }
 }
