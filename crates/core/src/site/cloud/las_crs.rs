@@ -1,14 +1,15 @@
-//! What the coordinate system of a LAS file says of its units: as WKT, or as keys of GeoTIFF. Heights may have another
-//! unit than easting and northing.
+//! What the coordinate system of a point cloud says of its units: as WKT, or as keys of GeoTIFF. Heights may have
+//! another unit than easting and northing.
 
 use las::crs::GeoTiffData;
 
 use crate::site::LengthUnit;
 
-/// Keys of GeoTIFF: the kind of the system, its number, the unit of its lengths, the number of the system of heights,
-/// and their unit.
+/// Keys of GeoTIFF: the kind of the system, its number, its projection, the unit of its lengths, the number of the
+/// system of heights, and their unit.
 const MODEL_TYPE: u16 = 1024;
 const SYSTEM: u16 = 3072;
+const PROJECTION: u16 = 3075;
 const LENGTH_UNIT: u16 = 3076;
 const HEIGHT_SYSTEM: u16 = 4096;
 const HEIGHT_UNIT: u16 = 4099;
@@ -19,6 +20,10 @@ const OFF_PLANE: std::ops::RangeInclusive<u16> = 2..=3;
 /// Numbers of GeoTIFF that stand for nothing, and for what other keys describe.
 const UNDEFINED: u16 = 0;
 const USER_DEFINED: u16 = 32_767;
+
+/// The projection of Mercator, and EPSG numbers of systems with it: those of web maps, and of the world.
+const OF_MERCATOR: u16 = 7;
+const MERCATOR_SYSTEMS: [u16; 3] = [3857, 3785, 3395];
 
 /// EPSG numbers of UTM over WGS 84, ETRS89 and NAD 83, which are in metres.
 const UTM: [std::ops::RangeInclusive<u16>; 4] =
@@ -48,6 +53,8 @@ pub(super) enum StatedUnit {
     Other,
     /// None of length: the coordinates are longitude and latitude, or geocentric.
     OffPlane,
+    /// One whose length on the ground depends on the latitude: that of a map in the projection of Mercator.
+    Mercator,
 }
 
 /// What a file states; `None` where it states nothing.
@@ -89,8 +96,11 @@ fn of_keys(value: impl Fn(u16) -> Option<u16>) -> Stated {
     };
     let system = value(SYSTEM).filter(|system| ![UNDEFINED, USER_DEFINED].contains(system));
     let is_utm = system.is_some_and(|system| UTM.iter().any(|zones| zones.contains(&system)));
+    let is_mercator = value(PROJECTION) == Some(OF_MERCATOR)
+        || system.is_some_and(|system| MERCATOR_SYSTEMS.contains(&system));
     let plane = match value(MODEL_TYPE) {
         Some(kind) if OFF_PLANE.contains(&kind) => Some(StatedUnit::OffPlane),
+        _ if is_mercator => Some(StatedUnit::Mercator),
         _ => {
             length(LENGTH_UNIT).or_else(|| is_utm.then_some(StatedUnit::Length(LengthUnit::Metre)))
         }
@@ -105,7 +115,7 @@ fn of_keys(value: impl Fn(u16) -> Option<u16>) -> Stated {
 
 /// The last unit of the part in the plane, where that of its axes stands behind those of what it is made of, and
 /// the last one of the part of the heights.
-fn of_wkt(text: &str) -> Stated {
+pub(super) fn of_wkt(text: &str) -> Stated {
     let lower = text.to_lowercase();
     let has = |text: &str, words: &[&str]| words.iter().any(|word| text.contains(word));
     let words = ["vert_cs", "vertcs", "vertcrs", "verticalcrs"];
@@ -114,8 +124,22 @@ fn of_wkt(text: &str) -> Stated {
     let is_off =
         has(plane, &["geogcs", "geogcrs", "geographiccrs", "geodcrs", "geodeticcrs", "geoccs"])
             && !has(plane, &["projcs", "projcrs", "projectedcrs"]);
-    let plane = if is_off { Some(StatedUnit::OffPlane) } else { last_unit(plane) };
+    let plane = match () {
+        () if is_off => Some(StatedUnit::OffPlane),
+        () if is_of_mercator(plane) => Some(StatedUnit::Mercator),
+        () => last_unit(plane),
+    };
     Stated { plane, height: last_unit(vertical), system: None }
+}
+
+/// Whether a text in small letters names the projection of Mercator, and not one along a meridian or at an angle to
+/// it, whose lengths are nearly those on the ground.
+fn is_of_mercator(text: &str) -> bool {
+    text.match_indices("mercator").any(|(at, _)| {
+        let before = text.get(..at).unwrap_or_default();
+        let before = before.trim_end_matches(|c: char| !c.is_alphanumeric());
+        !before.ends_with("transverse") && !before.ends_with("oblique")
+    })
 }
 
 /// The last unit in a part of WKT, by its name, else by the metres that it has.
@@ -197,6 +221,19 @@ mod tests {
             assert_eq!(of_wkt(system), of(off_plane, None), "{system}");
         }
         assert_eq!(of_wkt(""), Stated::default());
+        let mercator = Some(StatedUnit::Mercator);
+        for system in [
+            "PROJCS[\"WGS 84 / Pseudo-Mercator\",GEOGCS[\"c\"],PROJECTION[\"Mercator_1SP\"],UNIT[\"metre\",1]]",
+            "PROJCS[\"WGS_1984_Web_Mercator_Auxiliary_Sphere\",UNIT[\"Meter\",1.0]]",
+            "PROJCRS[\"a\",CONVERSION[\"b\",METHOD[\"Popular Visualisation Pseudo Mercator\"]],LENGTHUNIT[\"metre\",1]]",
+        ] {
+            assert_eq!(of_wkt(system), of(mercator, None), "{system}");
+        }
+        for projection in ["Transverse_Mercator", "Hotine_Oblique_Mercator", "Transverse Mercator"]
+        {
+            let system = format!("PROJCS[\"b\",PROJECTION[\"{projection}\"],UNIT[\"metre\",1]]");
+            assert_eq!(of_wkt(&system), of(length(METRES), None), "{system}");
+        }
         // Heights behind the system in the plane, as ArcGIS writes them, and within it.
         for system in [
             "PROJCS[\"b\",UNIT[\"Meter\",1.0]],VERTCS[\"d\",UNIT[\"Foot_US\",0.3048006096012192]]",
@@ -221,5 +258,12 @@ mod tests {
         let by_number = stated(&[(MODEL_TYPE, 1), (SYSTEM, 2225)]);
         assert_eq!(by_number, Stated { plane: None, height: None, system: Some(2225) });
         assert_eq!(stated(&[(SYSTEM, USER_DEFINED)]), Stated::default());
+        let mercator = Some(StatedUnit::Mercator);
+        for keys in [
+            &[(MODEL_TYPE, 1), (SYSTEM, 3857), (LENGTH_UNIT, 9001)][..],
+            &[(SYSTEM, USER_DEFINED), (PROJECTION, OF_MERCATOR), (LENGTH_UNIT, 9001)],
+        ] {
+            assert_eq!(stated(keys), of(mercator, None), "{keys:?}");
+        }
     }
 }

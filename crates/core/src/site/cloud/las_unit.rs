@@ -4,13 +4,19 @@ use std::io::BufReader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use e57::E57Reader;
 use las::Reader;
 
 use crate::data::{MAX_CLOUD_BYTES, open_file};
 use crate::site::cloud::las_check::CheckedHeader;
-use crate::site::cloud::las_crs::{Stated, StatedUnit, of_header};
+use crate::site::cloud::las_crs::{Stated, StatedUnit, of_header, of_wkt};
 use crate::site::cloud::source::damaged;
 use crate::site::{CloudFormat, LengthUnit, SiteError};
+
+/// Why coordinates in the projection of Mercator are refused.
+const OF_MERCATOR: &str = "its coordinates are those of a map in the projection of Mercator, as of web maps \
+    (EPSG:3857), whose metres are shorter than those on the ground by the cosine of the latitude, to two thirds at \
+    48 degrees; bring it into a grid of the country or into UTM first";
 
 /// The units in which the coordinates of a cloud are taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,14 +31,17 @@ impl CloudUnits {
     /// Those of a file: E57 is in metres, LAS in what is chosen, else in what it states, else in metres.
     ///
     /// # Errors
-    /// [`SiteError::Cloud`] for coordinates that are none in the plane, and if a unit has to be chosen: that of the
-    /// plane is not known here, or heights alone are said to be in feet.
+    /// [`SiteError::Cloud`] for coordinates that are none in the plane or whose unit differs from place to place, and
+    /// if a unit has to be chosen: that of the plane is not known here, or heights alone are said to be in feet.
     pub fn of(
         path: &Path,
         format: CloudFormat,
         chosen: Option<LengthUnit>,
     ) -> Result<Self, SiteError> {
         match format {
+            CloudFormat::E57 if of_e57(path).plane == Some(StatedUnit::Mercator) => {
+                Err(damaged(path, &OF_MERCATOR))
+            }
             CloudFormat::E57 => {
                 Ok(Self { plane: LengthUnit::Metre, height: LengthUnit::Metre, note: None })
             }
@@ -53,6 +62,7 @@ impl CloudUnits {
                         .to_owned(),
                 );
             }
+            (_, Some(StatedUnit::Mercator)) => return Err(OF_MERCATOR.to_owned()),
             (Some(chosen), _) => chosen,
             (None, Some(StatedUnit::Length(unit))) => unit,
             (None, Some(StatedUnit::Other)) => {
@@ -74,7 +84,7 @@ impl CloudUnits {
         };
         let plane_note = stated.plane_note(unit);
         let height_note = match stated.height {
-            Some(StatedUnit::Other | StatedUnit::OffPlane) => Some(format!(
+            Some(StatedUnit::Other | StatedUnit::OffPlane | StatedUnit::Mercator) => Some(format!(
                 "the unit of its heights is not known here; they were taken as {}",
                 height.word()
             )),
@@ -106,7 +116,7 @@ impl Stated {
                  (--unit)",
                 height.word()
             )),
-            Some(StatedUnit::Other | StatedUnit::OffPlane) => {
+            Some(StatedUnit::Other | StatedUnit::OffPlane | StatedUnit::Mercator) => {
                 Err("the unit of its heights is not known here, and it does not say that of its easting and \
                      northing; say it (--unit)"
                     .to_owned())
@@ -130,7 +140,7 @@ impl Stated {
                  say the unit (--unit {0})",
                 stated.word()
             ),
-            (Some(StatedUnit::Other | StatedUnit::OffPlane), _) => format!(
+            (Some(StatedUnit::Other | StatedUnit::OffPlane | StatedUnit::Mercator), _) => format!(
                 "the unit of its coordinate system is not known here, and its coordinates were taken as \
                  {taken}: {on_purpose}"
             ),
@@ -151,7 +161,7 @@ pub fn stated_cloud_unit(path: &Path) -> Option<LengthUnit> {
     let stated = stated(path);
     match stated.plane.or(stated.height)? {
         StatedUnit::Length(unit) => Some(unit),
-        StatedUnit::Other | StatedUnit::OffPlane => None,
+        StatedUnit::Other | StatedUnit::OffPlane | StatedUnit::Mercator => None,
     }
 }
 
@@ -162,6 +172,17 @@ fn stated(path: &Path) -> Stated {
         let (file, _) = open_file(path, MAX_CLOUD_BYTES).ok()?;
         let reader = Reader::new(BufReader::new(file)).ok()?;
         of_header(reader.header())
+    }));
+    read.ok().flatten().unwrap_or_default()
+}
+
+/// What an E57 file states of its coordinate system, which few do.
+fn of_e57(path: &Path) -> Stated {
+    // As above, of the other reader.
+    let read = catch_unwind(AssertUnwindSafe(|| {
+        let (file, _) = open_file(path, MAX_CLOUD_BYTES).ok()?;
+        let reader = E57Reader::new(BufReader::new(file)).ok()?;
+        reader.coordinate_metadata().map(of_wkt)
     }));
     read.ok().flatten().unwrap_or_default()
 }
@@ -226,6 +247,11 @@ mod tests {
         for chosen in [None, Some(METRES)] {
             let error = CloudUnits::chosen(chosen, off_plane).unwrap_err();
             assert!(error.contains("longitude and latitude"), "{error}");
+        }
+        let web_map = of(Some(StatedUnit::Mercator), length(METRES));
+        for chosen in [None, Some(METRES)] {
+            let error = CloudUnits::chosen(chosen, web_map).unwrap_err();
+            assert!(error.contains("EPSG:3857") && error.contains("UTM"), "{error}");
         }
     }
 }
