@@ -412,7 +412,7 @@ pub(super) fn meanings(table: &Table) -> Vec<Meaning> {
 }
 
 /// The channel and unit that the header of a column names, with the unit from the row of units if
-/// the header has none.
+/// the header has none. Where both say one and they differ, it is none that is known.
 fn column_meaning(table: &Table, column_idx: usize) -> Meaning {
     let name = table.header().get(column_idx).map_or("", String::as_str);
     let meaning = match spelling::meaning(name) {
@@ -426,24 +426,37 @@ fn column_meaning(table: &Table, column_idx: usize) -> Meaning {
                 None => Meaning::WrongUnit(channel, text.to_owned()),
             }
         }
+        (Meaning::Channel(channel, Some(in_header)), Some(text)) => {
+            match spelling::unit(channel.quantity(), text) {
+                Some(unit) if unit != in_header => {
+                    Meaning::WrongUnit(channel, both_units(in_header, unit))
+                }
+                _ => Meaning::Channel(channel, Some(in_header)),
+            }
+        }
         (meaning, _) => meaning,
     }
 }
 
+/// Two units that a file states for one column.
+fn both_units(in_header: Unit, in_row: Unit) -> String {
+    format!("{} by its header and {} by the row of units", in_header.symbol, in_row.symbol)
+}
+
 /// The unit that the file states for a column, in the row of units or in the header. The error is
-/// the text of a unit that does not measure `quantity`.
+/// the text of a unit that does not measure `quantity`, or of both where they differ.
 pub(super) fn stated_unit(
     name: &str,
     units_cell: Option<&str>,
     quantity: Quantity,
 ) -> Result<Option<Unit>, String> {
-    if let Some(text) = units_cell {
-        return match spelling::unit(quantity, text) {
-            Some(unit) => Ok(Some(unit)),
-            None => Err(text.to_owned()),
-        };
+    let in_header = spelling::trailing_unit(name, quantity);
+    let Some(text) = units_cell else { return in_header };
+    match (spelling::unit(quantity, text), in_header) {
+        (None, _) => Err(text.to_owned()),
+        (Some(unit), Ok(Some(in_header))) if unit != in_header => Err(both_units(in_header, unit)),
+        (Some(unit), _) => Ok(Some(unit)),
     }
-    spelling::trailing_unit(name, quantity)
 }
 
 fn ambiguous(table: &Table, later: ColumnUse, earlier: &ColumnUse) -> DataError {

@@ -1,5 +1,5 @@
 //! Finds the header of a table among its first lines: the names of the columns, a row of units
-//! beneath them, and the line at which the rows begin.
+//! beneath or above them, and the line at which the rows begin.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub(super) struct Header {
     /// Whether the file names its columns.
     pub is_written: bool,
     pub names: Vec<String>,
-    /// The cells of a row of units beneath the names; empty if there is no such row.
+    /// The cells of a row of units beneath or above the names; empty if there is no such row.
     pub units: Vec<String>,
     /// Line of this row.
     pub units_line: Option<u64>,
@@ -215,7 +215,7 @@ fn without_names<'a>(
 /// The header in the line of the names, and the first line of the rows below it.
 ///
 /// - `units`: the line of the units, if the user has said it; otherwise it is the line beneath the
-///   names if that looks like one;
+///   names, or else the one above them, if that looks like one;
 /// - `width`: number of columns of the rows.
 fn below_names<'s, 'a>(
     split: &'s [SplitLine<'a>],
@@ -229,15 +229,13 @@ fn below_names<'s, 'a>(
         .filter(|line| line.line.number > last)
         .filter(|line| !line.line.is_comment || names.line.is_comment);
     let mut body = below.next();
-    let is_unit_row = |line: &&SplitLine<'_>| {
-        line.is_text && spelling::is_unit_row(line.cells.iter().map(String::as_str))
-    };
     if units.is_none()
-        && let Some(line) = body.filter(is_unit_row)
+        && let Some(line) = body.filter(|line| is_row_of_units(line))
     {
         units = Some(line);
         body = below.next();
     }
+    units = units.or_else(|| units_above(split, names));
     let header = Header {
         line: names.line.number,
         is_written: true,
@@ -248,10 +246,28 @@ fn below_names<'s, 'a>(
     (header, body.map(|line| line.line))
 }
 
+fn is_row_of_units(line: &SplitLine<'_>) -> bool {
+    line.is_text && spelling::is_unit_row(line.cells.iter().map(String::as_str))
+}
+
+/// The line right above the names if it has their units: as many fields, and at least one unit that is known among
+/// them, which the numbers of columns in brackets are not.
+fn units_above<'s, 'a>(
+    split: &'s [SplitLine<'a>],
+    names: &SplitLine<'a>,
+) -> Option<&'s SplitLine<'a>> {
+    let above = split.iter().rfind(|line| line.line.number < names.line.number)?;
+    let is_alike = above.line.is_comment == names.line.is_comment
+        && n_named(&above.cells) == n_named(&names.cells);
+    let has_units = || above.cells.iter().any(|cell| spelling::is_known_unit(cell));
+    (is_alike && is_row_of_units(above) && has_units()).then_some(above)
+}
+
 /// Chooses the header among lines that contain no number. The first rule that finds a line applies:
 ///
 /// 1. the first line with the width of the table in which a field names a channel or is `case`;
-/// 2. the first line with the width of the table above the first row of numbers;
+/// 2. the first line with the width of the table above the first row of numbers, one of units only where there is
+///    no other;
 ///
 /// (in both, a line of which one field alone is written is none of a table of several columns, and a
 /// last column without values counts)
@@ -279,6 +295,9 @@ fn header_line<'s, 'a>(
         let has_several = |line: &&SplitLine<'_>| first_number.is_some() && line.cells.len() > 1;
         fitting
             .find(|line| line.cells.iter().any(|cell| is_name(cell)))
+            .or_else(|| {
+                above().filter(is_candidate).filter(fits).find(|line| !is_row_of_units(line))
+            })
             .or_else(|| above().filter(is_candidate).find(fits))
             .or_else(|| above().filter(is_candidate).rfind(has_several))
     })

@@ -51,6 +51,8 @@ mod quality;
 mod quality_motion;
 mod quality_phrase;
 mod read_settings;
+#[cfg(test)]
+mod read_tests;
 mod rows;
 mod series;
 mod si_values;

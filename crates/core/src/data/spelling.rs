@@ -237,6 +237,11 @@ pub(crate) fn is_unit_row<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     }) && any
 }
 
+/// Whether a cell of a row of units has one that is known.
+pub(crate) fn is_known_unit(cell: &str) -> bool {
+    unit_text(cell).is_some_and(is_unit)
+}
+
 /// The text of the unit in the end of a header or in a cell of a row of units, without brackets and
 /// separators; `None` if nothing is left.
 pub(crate) fn unit_text(rest: &str) -> Option<&str> {

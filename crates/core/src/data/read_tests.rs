@@ -1,0 +1,64 @@
+//! Single files as programs and people write them, and what is read of them or said.
+
+use crate::data::{Channel, ColumnMap, DataError, Loaded, Note, read_any_series};
+
+/// Reads a text as a file.
+///
+/// - `map`: what is said of its columns; empty if nothing is.
+fn read(text: &str, map: &str) -> Result<Loaded, DataError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.csv");
+    std::fs::write(&path, text).unwrap();
+    let map: ColumnMap = map.parse().unwrap();
+    read_any_series(&path, Some(&map))
+}
+
+fn error(text: &str, map: &str) -> String {
+    read(text, map).unwrap_err().to_string()
+}
+
+/// The values of a channel, SI units.
+fn values(loaded: &Loaded, channel: Channel) -> Vec<f64> {
+    let values = loaded.series.get(channel);
+    values.unwrap_or_else(|| panic!("{channel:?}: {:?}", loaded.notes)).to_vec()
+}
+
+fn is_said(loaded: &Loaded, words: &str) -> bool {
+    loaded.notes.iter().any(|note| note.to_string().contains(words))
+}
+
+#[test]
+fn a_row_of_units_may_stand_above_the_names() {
+    let rows = "0;0;1\n10;2;4\n20;1;2\n";
+    for head in [
+        "[ms];[kN];[kN]\ntime;fx;fy\n",
+        "ms;kN;kN\ntime;fx;fy\n",
+        "a test;of;Monday\nms;kN;kN\ntime;fx;fy\n",
+        "# ms;kN;kN\n# time;fx;fy\n",
+        "time;fx;fy\nms;kN;kN\n",
+    ] {
+        let loaded = read(&format!("{head}{rows}"), "").unwrap();
+        assert_eq!(loaded.series.time_s(), [0.0, 0.01, 0.02], "{head}");
+        assert_eq!(values(&loaded, Channel::Fx), [0.0, 2e3, 1e3], "{head}");
+        assert!(!loaded.notes.iter().any(|note| matches!(note, Note::UnitAssumed(_))), "{head}");
+    }
+    // Names that are not known are names all the same, and the units are those above them.
+    let text = format!("ms;kN;kN\nMesszeit;Kraft quer;Kraft hoch\n{rows}");
+    let loaded = read(&text, "time=Messzeit,fx=2,fy=3").unwrap();
+    assert_eq!(values(&loaded, Channel::Fy), [1e3, 4e3, 2e3]);
+    // The numbers of columns are no units.
+    let loaded = read(&format!("(1);(2);(3)\ntime;fx;fy\n{rows}"), "").unwrap();
+    assert_eq!(values(&loaded, Channel::Fx), [0.0, 2.0, 1.0]);
+    assert!(is_said(&loaded, "names no unit; taken as N"), "{:?}", loaded.notes);
+}
+
+#[test]
+fn a_header_and_a_row_of_units_that_differ_are_refused() {
+    let rows = "0;0;1\n0.1;2;4\n0.2;1;2\n";
+    let said = error(&format!("time;Fx [kN];Fy\ns;N;N\n{rows}"), "");
+    assert!(said.contains("kN by its header and N by the row of units"), "{said}");
+    let mapped = error(&format!("time;Kraft [kN];fy\ns;N;N\n{rows}"), "fx=2");
+    assert!(mapped.contains("kN by its header and N by the row of units"), "{mapped}");
+    assert!(read(&format!("time;Fx [kN];Fy\ns;N;N\n{rows}"), "fx=2:kN").is_ok());
+    assert!(read(&format!("time;Fx [kN];Fy [kN]\ns;kN;kN\n{rows}"), "").is_ok());
+}
