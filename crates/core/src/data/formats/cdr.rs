@@ -16,14 +16,24 @@
 //! ```
 //!
 //! Which columns there are differs from module to module. A number in brackets is the same in another unit.
-//! The `.CDRX` of which the export was made is not read.
+//! A spreadsheet of a country with decimal commas saves such a file with semicolons between its cells and commas in
+//! its numbers; both are found by the cells that are numbers. Older modules have their times in a row:
+//!
+//! ```text
+//! Time (sec),-2.0,-1.0                                  or  Parameter,-2.0 sec,-1.0 sec
+//! "Vehicle Speed (MPH [km/h])",40 [64],36 [58]
+//! ```
+//!
+//! Such a table is stood up where nothing else can be meant. The `.CDRX` of which the export was made is not read.
 
 use std::path::Path;
 
 use crate::data::dialect::{Dialect, Separator, split};
+use crate::data::formats::upright::upright;
 use crate::data::formats::{Converted, Said, number_text};
+use crate::data::marks::Marks;
 use crate::data::spelling::{letters_and_digits, unit};
-use crate::data::{DataError, ReadSettings, Sheet, SheetRef};
+use crate::data::{DataError, ReadSettings, Sheet, SheetRef, Thousands};
 use crate::units::Quantity;
 
 /// Bytes of a report. Those of modules with many events have some hundred kilobytes.
@@ -31,6 +41,9 @@ pub(crate) const MAX_BYTES: usize = 8 << 20;
 
 /// Lines within which a report says what it is.
 const EXAMINED_LINES: usize = 60;
+
+/// Lines by which the separator of a report is found.
+const SNIFFED_LINES: usize = 500;
 
 /// Characters of a name of a section that are kept.
 const SHOWN_CHARS: usize = 120;
@@ -56,9 +69,15 @@ const TITLES: [&str; 12] = [
 pub(crate) struct Section {
     /// Its name, with the event in parentheses.
     pub title: String,
-    /// Line and cells of its rows that are not blank, without blank cells at their ends.
-    pub rows: Vec<(u64, Vec<String>)>,
+    /// Line and cells of its rows that are not blank, without blank cells at their ends; the decimal sign of numbers
+    /// is a point.
+    pub rows: Vec<Row>,
+    /// Whether it is a table whose times stood in a row; its lines are then counted from 1.
+    pub is_turned: bool,
 }
+
+/// Line and cells of a row.
+pub(crate) type Row = (u64, Vec<String>);
 
 /// A report with all of its sections.
 #[derive(Debug, Clone)]
@@ -88,23 +107,18 @@ impl Report {
             let (bytes, limit) = (text.len() as u64, MAX_BYTES as u64);
             return Err(DataError::TooLarge { path: path.to_owned(), bytes, limit });
         }
-        let separator = separator(text);
         let mut sections: Vec<Section> = Vec::new();
-        for (number, line) in (1..).zip(text.lines()) {
-            let cells = split(line, separator);
-            let n_cells = cells.iter().rposition(|cell| !cell.trim().is_empty());
-            let Some(last) = n_cells else { continue };
-            let cells: Vec<String> =
-                cells.iter().take(last + 1).map(|cell| cell.trim().to_owned()).collect();
+        for (number, cells) in rows_of(text) {
             if let Some(title) = title(&cells) {
-                sections.push(Section { title, rows: Vec::new() });
+                sections.push(Section { title, rows: Vec::new(), is_turned: false });
             } else if let Some(section) = sections.last_mut() {
                 section.rows.push((number, cells));
             } else {
-                let title = "FILE".to_owned();
-                sections.push(Section { title, rows: vec![(number, cells)] });
+                let (title, rows) = ("FILE".to_owned(), vec![(number, cells)]);
+                sections.push(Section { title, rows, is_turned: false });
             }
         }
+        let sections = sections.into_iter().flat_map(Section::stood_up).collect();
         Ok(Self { sections })
     }
 
@@ -159,6 +173,17 @@ impl Report {
 }
 
 impl Section {
+    /// The section; a table whose times are in a row is stood up, and what stands above it is a section of its own.
+    fn stood_up(mut self) -> Vec<Self> {
+        let Some((at, rows)) = upright(&self.rows) else { return vec![self] };
+        let table = Self { title: self.title.clone(), rows, is_turned: true };
+        self.rows.truncate(at);
+        match self.rows.is_empty() {
+            true => vec![table],
+            false => vec![self, table],
+        }
+    }
+
     /// The values beside keys that begin so.
     fn value(&self, key: &str) -> Option<&str> {
         let is_key = |cells: &[String]| {
@@ -267,12 +292,13 @@ pub(super) fn as_table(
         let wanted = settings.sheet.as_ref().map_or_else(String::new, SheetRef::to_string);
         return Err(DataError::NoSheet { path: path.to_owned(), wanted, found: all });
     };
+    let in_row = if section.is_turned { ", whose times stand in a row" } else { "" };
     let said = Said {
-        description: format!("{}; read is {name:?}", report.description()),
+        description: format!("{}; read is {name:?}{in_row}", report.description()),
         doubts: report.doubts(),
         part: Some(Sheet { name: name.clone(), all: all.clone() }),
         device: report.value("edrdevicetype").unwrap_or("CDR").to_owned(),
-        keeps_lines: true,
+        keeps_lines: !section.is_turned,
         ..Said::default()
     };
     Ok(Some(Converted { text: section.as_table(), said }))
@@ -283,22 +309,55 @@ pub(crate) fn is_before_crash(section: &Section) -> bool {
     letters_and_digits(&section.title).starts_with("precrash") && section.is_table()
 }
 
-/// Whether a section has the seconds before the crash in another way: with the times in a row, as older modules do.
-pub(crate) fn is_unread_before_crash(section: &Section) -> bool {
+/// Whether a section is named as a table over time: of the seconds before the crash, or of a change of velocity.
+pub(crate) fn is_over_time(section: &Section) -> bool {
+    let title = letters_and_digits(&section.title);
+    let words = ["precrash", "longitudinal", "lateral", "deltav"];
+    words.iter().any(|word| title.starts_with(word))
+}
+
+/// Whether a section has a table over time that is not read: one without a header, and without times in a row.
+pub(crate) fn is_unread(section: &Section) -> bool {
     let is_row = |cells: &[String]| cells.len() > 2 && !is_no_data(cells);
-    letters_and_digits(&section.title).starts_with("precrash")
+    is_over_time(section)
         && !section.is_table()
         && section.rows.iter().any(|(_, cells)| is_row(cells))
 }
 
 /// The number at the beginning of a cell: `31 [50]` is 31.
 pub(crate) fn number(cell: &str) -> Option<f64> {
+    number_in(cell, false)
+}
+
+/// - `decimal_comma`: whether the decimal sign may be a comma.
+fn number_in(cell: &str, decimal_comma: bool) -> Option<f64> {
     let first = match cell.split_once('[') {
         Some((first, rest)) if rest.trim_end().ends_with(']') => first.trim(),
         _ => cell.trim(),
     };
-    let (separator, decimal_comma, thousands) = (Separator::Tab, false, None);
-    Dialect { separator, decimal_comma, thousands }.number(first)
+    Dialect { separator: Separator::Tab, decimal_comma, thousands: None }.number(first)
+}
+
+/// Line and cells of the rows of a report that are not blank, without blank cells at their ends. Where numbers have
+/// decimal commas, those become points.
+fn rows_of(text: &str) -> Vec<Row> {
+    let separator = separator(text);
+    let cells = |line: &str| -> Vec<String> {
+        let cells = split(line, separator);
+        let n_cells = cells.iter().rposition(|cell| !cell.trim().is_empty()).map_or(0, |at| at + 1);
+        cells.iter().take(n_cells).map(|cell| cell.trim().to_owned()).collect()
+    };
+    let rows = (1..).zip(text.lines().map(cells));
+    let mut rows: Vec<Row> = rows.filter(|(_, cells)| !cells.is_empty()).collect();
+    let mut marks = Marks::default();
+    let all = rows.iter().flat_map(|(_, cells)| cells);
+    all.flat_map(|cell| cell.split(['[', ']'])).for_each(|part| marks.add(part));
+    if marks.is_decimal(Thousands::Comma) {
+        let has_comma = |cell: &&mut String| cell.contains(',') && number_in(cell, true).is_some();
+        let cells = rows.iter_mut().flat_map(|(_, cells)| cells).filter(has_comma);
+        cells.for_each(|cell| *cell = cell.replace(',', "."));
+    }
+    rows
 }
 
 /// The name of a section, if a line is one: one cell, or one that its commas have divided.
@@ -345,11 +404,16 @@ pub(crate) fn column_name(name: &str) -> String {
     }
 }
 
-/// The one of comma, semicolon and tab that a report has most of.
+/// The one of comma, semicolon and tab by which most cells are numbers, with either decimal sign; of those by which as
+/// many are, the one that a report has most of.
 fn separator(text: &str) -> Separator {
     let separators = [Separator::Tab, Separator::Semicolon, Separator::Comma];
+    let lines = || text.lines().take(SNIFFED_LINES);
     let count = |separator: &Separator| {
-        text.bytes().take(EXAMINED_LINES << 10).filter(|byte| *byte == separator.byte()).count()
+        let cells = lines().flat_map(|line| split(line, *separator));
+        let n_numbers = cells.filter(|cell| number_in(cell, true).is_some()).count();
+        let n_signs = lines().flat_map(str::bytes).filter(|byte| *byte == separator.byte()).count();
+        (n_numbers, n_signs)
     };
     separators.into_iter().max_by_key(count).unwrap_or(Separator::Comma)
 }

@@ -23,6 +23,7 @@ mod recorder_table;
 mod tdms;
 mod tdms_file;
 mod tdms_objects;
+mod upright;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};

@@ -9,13 +9,18 @@
 //! A column whose header names no unit is left out, and said so. Lateral values and the yaw rate are positive to
 //! the right, as SAE J1698 has them; a steering wheel is positive to the left.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use crate::data::budget::MAX_TABLE_BYTES;
+use crate::data::error::quoted;
 use crate::data::formats::cdr::{
-    MAX_BYTES, Report, Section, column_name, is_before_crash, is_report, is_unread_before_crash,
+    MAX_BYTES, Report, Row, Section, column_name, is_before_crash, is_over_time, is_report,
+    is_unread,
 };
+use crate::data::formats::number_text;
 use crate::data::formats::recorder_table::Table563;
+use crate::data::formats::upright::upright;
 use crate::data::spelling::{is_delta_v, letters_and_digits, trailing_unit};
 use crate::data::text::read_text;
 use crate::data::{DataError, ReadSettings, Table};
@@ -187,9 +192,7 @@ impl RecorderRecord {
         let has_several = events.len() > 1;
         record.events = events;
         let is_of_none = |section: &&Section| {
-            let title = letters_and_digits(&section.title);
-            let words = ["precrash", "longitudinal", "lateral", "deltav"];
-            let is_record = words.iter().any(|word| title.starts_with(word)) && section.is_table();
+            let is_record = is_over_time(section) && section.is_table();
             has_several && is_record && event_of(&section.title).is_none()
         };
         let n_of_none = report.sections.iter().filter(is_of_none).count();
@@ -203,18 +206,15 @@ impl RecorderRecord {
             None => !has_several,
         };
         let sections: Vec<&Section> = report.sections.iter().filter(is_of_event).collect();
-        for section in sections.iter().filter(|section| is_unread_before_crash(section)) {
+        for section in sections.iter().filter(|section| is_unread(section)) {
             record.doubts.push(format!(
-                "the table {:?} has no header above its rows and is not read: write its times and speeds below each \
-                 other",
+                "the table {:?} has no header above its rows and no row of times that leaves nothing open, and is \
+                 not read: write its times and its values below each other",
                 section.title
             ));
         }
         for section in sections.iter().filter(|section| section.is_table()) {
-            let numbers = |idx: usize| section.column(idx);
-            let texts = |idx: usize| section.texts(idx);
-            let table = Table563 { header: section.header(), numbers: &numbers, texts: &texts };
-            record.add_table(&table, is_before_crash(section));
+            record.add_section(section);
         }
         // A record over time says more than its largest value.
         sections.iter().for_each(|section| record.add_keys(section));
@@ -222,7 +222,45 @@ impl RecorderRecord {
         Ok(record)
     }
 
+    /// Adds a table of a report.
+    fn add_section(&mut self, section: &Section) {
+        let numbers = |idx: usize| section.column(idx);
+        let texts = |idx: usize| section.texts(idx);
+        let table = Table563 { header: section.header(), numbers: &numbers, texts: &texts };
+        if section.is_turned {
+            self.description += &format!("; the times of {:?} stand in a row", section.title);
+        }
+        // Modules with their times in a row have them among the status of the system, too.
+        let has_controls = is_before_crash(section) || section.is_turned && !is_over_time(section);
+        self.add_table(&table, has_controls);
+    }
+
+    /// The table if its times stand in a row, as a section of a report.
+    fn turned(table: &Table) -> Option<Section> {
+        if table.has_header() {
+            return None;
+        }
+        let cell = |cell: Cow<'_, str>| match table.dialect().number(&cell) {
+            Some(number) => number_text(number),
+            None => cell.into_owned(),
+        };
+        let row = |(line, cells): (u64, Vec<Cow<'_, str>>)| -> Row {
+            (line, cells.into_iter().map(cell).collect())
+        };
+        let rows: Vec<Row> = table.rows().map(row).collect();
+        let (at, rows) = upright(&rows)?;
+        let title = "table".to_owned();
+        (at == 0).then_some(Section { title, rows, is_turned: true })
+    }
+
     fn from_table(table: &Table) -> Self {
+        let mut record =
+            Self { description: "a table of an event data recorder".to_owned(), ..Self::default() };
+        if let Some(section) = Self::turned(table) {
+            record.add_section(&section);
+            record.keep_one_end();
+            return record;
+        }
         let numbers = |idx: usize| -> Vec<Option<f64>> {
             (0..table.n_rows()).map(|row| table.number(row, idx)).collect()
         };
@@ -234,9 +272,15 @@ impl RecorderRecord {
             None => name.clone(),
         };
         let header = table.header().iter().enumerate().map(with_unit).collect();
-        let mut record =
-            Self { description: "a table of an event data recorder".to_owned(), ..Self::default() };
         record.add_table(&Table563 { header, numbers: &numbers, texts: &texts }, true);
+        let columns: Vec<usize> = (0..table.header().len()).collect();
+        let open = table.ambiguous_number(&columns).map(|(row, column)| table.cell(row, column));
+        record.doubts.extend(open.map(|text| {
+            format!(
+                "{} may have a decimal sign or thousands, and nothing in the file says which; a decimal sign is taken",
+                quoted(&text)
+            )
+        }));
         record.keep_one_end();
         record
     }

@@ -300,6 +300,21 @@ impl Table563<'_> {
         found
     }
 
+    /// Cells of a column that are neither blank nor numbers, such as dates that a spreadsheet has made of numbers.
+    fn unreadable(&self, idx: usize, values: &[Option<f64>]) -> Option<String> {
+        let texts = (self.texts)(idx);
+        let is_text =
+            |(text, value): &(&String, &Option<f64>)| value.is_none() && !text.trim().is_empty();
+        let mut unreadable = texts.iter().zip(values).filter(is_text);
+        let (first, _) = unreadable.next()?;
+        Some(format!(
+            "cells of {} that are no numbers: {}, the first of them {}; they are taken as blank",
+            quoted(self.header.get(idx)?),
+            1 + unreadable.count(),
+            quoted(first)
+        ))
+    }
+
     /// The numbers of the first column whose name fits and that has a unit, in SI units. Others that fit are said.
     fn column(
         &self,
@@ -324,10 +339,10 @@ impl Table563<'_> {
                         let later = later.join(", ");
                         doubts.push(format!("{} is read, and not {later}", quoted(name)));
                     }
-                    let values = (self.numbers)(idx).into_iter();
-                    return Some(
-                        values.map(|value| value.map(|value| unit.to_si(value))).collect(),
-                    );
+                    let values = (self.numbers)(idx);
+                    doubts.extend(self.unreadable(idx, &values));
+                    let in_si = |value: Option<f64>| value.map(|value| unit.to_si(value));
+                    return Some(values.into_iter().map(in_si).collect());
                 }
                 Ok(None) if quantity != Quantity::Angle || key.contains("wheel") => {
                     doubts.push(format!(
@@ -438,9 +453,11 @@ fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
 /// Whether a switch is on; `None` if the cell does not say.
 fn is_on(cell: &str) -> Option<bool> {
     match letters_and_digits(cell).as_str() {
-        "on" | "yes" | "applied" | "pressed" | "active" | "engaged" | "true" => Some(true),
+        // As spreadsheets in German write them, too.
+        "on" | "yes" | "applied" | "pressed" | "active" | "engaged" | "true" | "ein" | "ja"
+        | "wahr" => Some(true),
         "off" | "no" | "notapplied" | "released" | "notpressed" | "inactive" | "false"
-        | "nonengaged" | "notengaged" => Some(false),
+        | "nonengaged" | "notengaged" | "aus" | "nein" | "falsch" => Some(false),
         _ => number(cell).filter(|number| [0.0, 1.0].contains(number)).map(|number| number != 0.0),
     }
 }

@@ -43,18 +43,88 @@ fn a_report_gives_evidence_and_controls() {
 
 /// Older modules have the times of the seconds before the crash in a row.
 #[test]
-fn a_table_before_the_crash_that_lies_on_its_side_is_said() {
-    let table = REPORT.find("Times (sec)").unwrap()..REPORT.find("\"DELTA-V, LONG").unwrap();
-    let mut text = REPORT.to_owned();
-    text.replace_range(
-        table,
-        "Time (sec),-2.6,-1.6,-0.6\n\"Vehicle Speed (MPH [km/h])\",40 [64],36 [58],30 [48]\n",
-    );
-    let record = read(&text, None).unwrap();
-    assert!(record.speed_before.is_none() && record.delta_v_ahead.is_some(), "{record:?}");
-    assert!(record.doubts.iter().any(|doubt| doubt.contains("no header above")), "{record:?}");
-    let plain = read(REPORT, None).unwrap();
-    assert!(!plain.doubts.iter().any(|doubt| doubt.contains("no header above")), "{plain:?}");
+fn a_table_before_the_crash_that_lies_on_its_side_is_read_or_said() {
+    let with_table = |table: &str| {
+        let place = REPORT.find("Times (sec)").unwrap()..REPORT.find("\"DELTA-V, LONG").unwrap();
+        let mut text = REPORT.to_owned();
+        text.replace_range(place, table);
+        read(&text, None).unwrap()
+    };
+    let is_said = |record: &RecorderRecord| {
+        record.doubts.iter().any(|doubt| doubt.contains("no header above"))
+    };
+    let speeds = "\"Vehicle Speed (MPH [km/h])\",40 [64],36 [58],30 [48]\nBrake,Off,Off,On\n";
+    for times in ["Time (sec),-2.6,-1.6,-0.6\n", "Parameter,-2.6 sec,-1.6 sec,-0.6 sec\n"] {
+        let record = with_table(&format!("{times}{speeds}"));
+        let speed = record.speed_before.unwrap();
+        assert_eq!((speed.speed_m_s, speed.at_s), (30.0 * 0.447_04, -0.6), "{times}");
+        assert_eq!(record.before.time_s, [-2.6, -1.6, -0.6]);
+        assert_eq!(record.before.is_braked, [false, false, true]);
+        assert!(record.delta_v_ahead.is_some() && !is_said(&record), "{record:?}");
+        assert!(record.description.contains("stand in a row"), "{}", record.description);
+    }
+    let open = with_table(&format!("Seconds,-2.6,-1.6,-0.6\n{speeds}"));
+    assert!(open.speed_before.is_none() && is_said(&open), "{open:?}");
+    assert!(!is_said(&read(REPORT, None).unwrap()));
+    // The same of any table, and with decimal commas.
+    let table = "Time [s];-1,0;-0,5;0\nSpeed [km/h];64,0;58,3;48,7\n";
+    let record = read(table, None).unwrap();
+    let speed = record.speed_before.unwrap();
+    assert!((speed.speed_m_s - 48.7 / 3.6).abs() < 1e-12, "{record:?}");
+    assert_eq!(record.before.time_s, [-1.0, -0.5, 0.0]);
+}
+
+/// A report that a spreadsheet with decimal commas has saved, which leaves the text `40 [64.4]` as it is.
+const GERMAN: &str = "CDR FILE INFORMATION;;;\nEDR Device Type;Module 7;;\n\
+    Complete File Recorded;Yes;;\nPRE-CRASH DATA [2 SAMPLES/SEC] (EVENT RECORD 1);;;\n\
+    Times (sec);Speed, Vehicle Indicated (MPH [km/h]);Steering Input (deg);Service Brake\n\
+    -1,0;40 [64.4];0,5;Off\n-0,5;36 [57,9];10;Ein\n0;30 [48];20;On\n\
+    DELTA-V, LONGITUDINAL (EVENT RECORD 1);;;\n\
+    Time (msec);Delta-V, Longitudinal (MPH [km/h]);;\n\
+    0;0;;\n50;-10,25;;\n80;-19,5;;\n100;-20,1;;\n120;-20,1;;\n\
+    SYSTEM STATUS AT EVENT (EVENT RECORD 2);;;\n\
+    Maximum Delta-V, Lateral (MPH [km/h]);5,5 [8,9];;\n";
+
+#[test]
+fn a_report_with_decimal_commas_is_read() {
+    let mph = 0.447_04;
+    let record = read(GERMAN, None).unwrap();
+    let delta_v = record.delta_v_ahead.unwrap();
+    assert!((delta_v.delta_v_m_s + 20.1 * mph).abs() < 1e-9, "{delta_v:?}");
+    assert_eq!((delta_v.ends_s, delta_v.is_cut), (Some(0.12), false));
+    assert_eq!(record.before.time_s, [-1.0, -0.5, 0.0]);
+    assert!((record.before.speed_m_s[0] - 40.0 * mph).abs() < 1e-9, "{record:?}");
+    assert!((record.before.steering_wheel_rad[0] - 0.5_f64.to_radians()).abs() < 1e-12);
+    assert_eq!(record.before.is_braked, [false, true, true]);
+    let lateral = read(GERMAN, Some(2)).unwrap().delta_v_right.unwrap();
+    assert!((lateral.delta_v_m_s - 5.5 * mph).abs() < 1e-9, "{lateral:?}");
+    // Commas between the cells, and in numbers within quotation marks.
+    let quoted = "CDR FILE INFORMATION\nEDR Device Type,Module 7\nComplete File Recorded,Yes\n\
+        PRE-CRASH DATA (EVENT RECORD 1)\nTimes (sec),\"Speed (MPH [km/h])\"\n\
+        \"-0,5\",36 [58]\n\"0,0\",\"30,5 [49,1]\"\n";
+    let record = read(quoted, None).unwrap();
+    assert_eq!(record.before.time_s, [-0.5, 0.0]);
+    let speed = record.speed_before.unwrap();
+    assert!((speed.speed_m_s - 30.5 * mph).abs() < 1e-9, "{speed:?}");
+}
+
+/// A spreadsheet makes the date `04. Mai` of 4.5.
+#[test]
+fn cells_that_are_no_numbers_are_said() {
+    let is_said = |record: &RecorderRecord, words: &str| {
+        record.doubts.iter().any(|doubt| doubt.contains("no numbers") && doubt.contains(words))
+    };
+    let broken =
+        REPORT.replace("50,-10\n", "50,10. Feb\n").replace("-0.5,36 [58]", "05. Mai,36 [58]");
+    let record = read(&broken, None).unwrap();
+    assert!(is_said(&record, "10. Feb") && is_said(&record, "05. Mai"), "{record:?}");
+    assert!(!is_said(&read(REPORT, None).unwrap(), ""));
+    let table = read("Time [s];Speed [km/h]\n-1;64\n-0.5;SNA\n0;48\n", None).unwrap();
+    assert!(is_said(&table, "SNA"), "{table:?}");
+    // Nothing says what the comma is.
+    let open = read("Time [s];Speed [km/h]\n-1;64\n0;48,125\n", None).unwrap();
+    assert!((open.speed_before.unwrap().speed_m_s - 48.125 / 3.6).abs() < 1e-12, "{open:?}");
+    assert!(open.doubts.iter().any(|doubt| doubt.contains("48,125")), "{open:?}");
 }
 
 #[test]
