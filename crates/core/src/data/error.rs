@@ -604,10 +604,18 @@ fn or_go_on(before_s: f64, after_s: f64) -> &'static str {
     if after_s < before_s { ", or let a clock go on that begins again there" } else { "" }
 }
 
-/// What helps where a column is a change of velocity, which a recorder writes and no channel is.
-fn or_recorder(found: &[String]) -> &'static str {
-    match found.iter().any(|name| spelling::is_delta_v(&spelling::letters_and_digits(name))) {
-        true => "; a table of an event data recorder, with Δv: impactlab import --recorder",
+/// What a recorder keeps of a driver beside the speed.
+const OF_DRIVER: [&str; 4] = ["brake", "accelerator", "throttle", "steering"];
+
+/// What helps where columns are those of a recorder: a change of velocity, which no channel is, or the speed beside what
+/// the driver did.
+pub(super) fn or_recorder(found: &[String]) -> &'static str {
+    let keys: Vec<String> = found.iter().map(|name| spelling::letters_and_digits(name)).collect();
+    let has = |words: &[&str]| keys.iter().any(|key| words.iter().any(|word| key.contains(word)));
+    let is_of_recorder =
+        keys.iter().any(|key| spelling::is_delta_v(key)) || has(&["speed"]) && has(&OF_DRIVER);
+    match is_of_recorder {
+        true => "; a table of an event data recorder: impactlab import --recorder",
         false => "",
     }
 }

@@ -62,3 +62,20 @@ fn a_header_and_a_row_of_units_that_differ_are_refused() {
     assert!(read(&format!("time;Fx [kN];Fy\ns;N;N\n{rows}"), "fx=2:kN").is_ok());
     assert!(read(&format!("time;Fx [kN];Fy [kN]\ns;kN;kN\n{rows}"), "").is_ok());
 }
+
+/// A recorder samples speed and change of velocity at times of their own, and leaves the other cells blank.
+#[test]
+fn a_blank_cell_of_a_recorder_names_the_option_that_reads_it() {
+    let hint = "impactlab import --recorder";
+    let table = "Time [s],Speed [mph],\"Delta-V, Longitudinal [km/h]\"\n-1,31,\n0,27,0\n0.1,,-9\n";
+    let said = error(table, "");
+    assert!(said.contains(hint) && said.contains("f.csv:"), "{said}");
+    let steered = "Time [s],Steering Wheel Angle [deg],Speed [mph],Service Brake\n\
+        0,0,31,Off\n0.5,,27,On\n";
+    let said = error(steered, "");
+    assert!(said.contains("f.csv:3:2: ") && said.contains(hint), "{said}");
+    let before = error("Time [s],Speed [mph],Service Brake\n-1,31,Off\n0,27,On\n", "");
+    assert!(before.contains(hint), "{before}");
+    let log = error("time [s],x [m],y [m]\n0,0,0\n1,,0\n", "");
+    assert!(log.contains("f.csv:3:2: ") && !log.contains(hint), "{log}");
+}

@@ -8,6 +8,7 @@ use sha2::{Digest, Sha256};
 
 use crate::data::budget::{MAX_CASES_BYTES, MAX_LINE_BYTES, MAX_TABLE_BYTES};
 use crate::data::dialect::{Dialect, Separator};
+use crate::data::error::or_recorder;
 use crate::data::foreign::refuse_known_text;
 use crate::data::formats::{self, Converted, Said};
 use crate::data::header::{Header, Line, check_fields, find_header, first_lines};
@@ -353,20 +354,22 @@ impl Table {
         Ok(numbers)
     }
 
-    /// The error for a cell that does not hold what is expected.
+    /// The error for a cell that does not hold what is expected. A recorder leaves cells blank where it has no sample.
     pub(super) fn cell_error(
         &self,
         row_idx: usize,
         column_idx: usize,
         expected: &str,
     ) -> DataError {
+        let is_blank = self.cell(row_idx, column_idx).trim().is_empty();
+        let hint = if is_blank { or_recorder(&self.header.names) } else { "" };
         DataError::Cell {
             path: self.path.clone(),
             line: self.line(row_idx),
             column: column_idx + 1,
             name: self.header.names.get(column_idx).cloned().unwrap_or_default(),
             text: self.cell(row_idx, column_idx).into_owned(),
-            expected: expected.into(),
+            expected: format!("{expected}{hint}").into(),
         }
     }
 }
