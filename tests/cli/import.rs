@@ -57,6 +57,30 @@ fn a_recorder_becomes_evidence_and_controls() {
     }
 }
 
+/// A record alone is no complete evidence, and can be added to all the same.
+#[test]
+fn evidence_with_a_record_alone_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    let report = file("report.csv");
+    fs::write(&report, REPORT).unwrap();
+    let first = file("first");
+    let (notes, _) = said(&answer(&["import", text(&report), "--out", text(&first)]));
+    assert!(notes.contains("the evidence is not complete yet: damage of the struck"), "{notes}");
+    let evidence = first.join("evidence.toml");
+    let written = fs::read_to_string(&evidence).unwrap();
+    assert!(!written.contains("side"), "nobody has said a side: {written}");
+    let second = file("second");
+    let args = ["import", text(&report), "--evidence", text(&evidence), "--car", "striking"];
+    answer(&[&args[..], &["--out", text(&second)]].concat());
+    let both = Evidence::load_draft(&second.join("evidence.toml")).unwrap();
+    assert!(both.edr.is_some() && both.striking_edr == both.edr, "{both:?}");
+    assert_eq!(both.damage.side, None);
+    let output = program().args(["reconstruct", text(&evidence)]).output().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success() && error.contains("damage.side is missing"), "{error}");
+}
+
 #[test]
 fn a_table_of_a_report_is_opened_as_any_table() {
     let folder = tempfile::tempdir().unwrap();

@@ -8,6 +8,7 @@ use impactlab::app::{
     App, CaseCommand, Command, FollowedParticle, Leaving, Output, PlaybackCommand,
     ReconstructionCommand, State, Workspace,
 };
+use impactlab_core::collision::Side;
 use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_reconstruct::evidence::{Edr, Evidence, RestPose, Stated};
 use impactlab_study::{EvidenceChoice, VehicleChoice};
@@ -280,6 +281,8 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert_eq!((empty.place_m(), edited.damage.along()), (None, None));
     edited.rest = Some(RestPose { x_m: Some(30.0), y_m: Some(0.0), ..empty });
     edited.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None });
+    assert_eq!(edited.damage.side, None);
+    edited.damage.side = Some(Side::Right);
     let project = &mut harness.state_mut().state_mut().project;
     project.reconstruct.as_mut().expect("evidence").evidence =
         EvidenceChoice::Inline(Box::new(edited));

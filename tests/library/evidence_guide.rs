@@ -88,7 +88,7 @@ fn told(page: &str) -> BTreeMap<String, BTreeSet<String>> {
 fn the_page_on_the_evidence_file_has_every_key_and_no_other() {
     let mut keys = Keys::default();
     for side in Side::ALL {
-        let damage = Damage { side, ..Damage::default() };
+        let damage = Damage { side: Some(side), ..Damage::default() };
         Evidence { damage, ..Evidence::default() }.items(&mut keys);
     }
     let kind = EvidenceKind::SingleCar;

@@ -56,7 +56,7 @@ impl Cars {
     /// Whether the struck car was hit on a flank and clearly behind its CG, as in a PIT manoeuvre.
     pub fn is_hit_behind_cg(&self, evidence: &Evidence) -> bool {
         let damage = &evidence.damage;
-        let is_flank = matches!(damage.side, Side::Left | Side::Right);
+        let is_flank = matches!(damage.struck_side(), Side::Left | Side::Right);
         let wheelbase_m = self.struck.parameters.geometry.wheelbase_m();
         is_flank && damage.along().is_some_and(|along| along.value < -PIT_SHARE * wheelbase_m)
     }

@@ -161,10 +161,10 @@ fn zone_caveats(zones: &[FrictionZone]) -> impl Iterator<Item = Caveat> {
 pub fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
     let footprint = Footprint::from(&cars.struck.parameters.geometry);
     let Some(Measured { value, sigma }) = damage.along() else { return Ok(()) };
-    let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
+    let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.struck_side()));
     let reach_m = DAMAGE_REACH * sigma;
     let along_m = value - value.clamp(-reach_m, reach_m);
-    let point = |along_m: f64| match damage.side {
+    let point = |along_m: f64| match damage.struck_side() {
         Side::Left | Side::Right => [along_m, across_m],
         Side::Front | Side::Rear => [across_m, along_m],
     };
@@ -178,7 +178,7 @@ pub fn check_damage(damage: &Damage, cars: &Cars) -> Result<(), OffOutline> {
 fn damage_off_car(damage: &Damage, cars: &Cars) -> Option<Caveat> {
     let Measured { value, sigma } = damage.along()?;
     let geometry = &cars.struck.parameters.geometry;
-    let (size, size_m, high) = match damage.side {
+    let (size, size_m, high) = match damage.struck_side() {
         Side::Left | Side::Right => {
             (SheetQuantity::Length, geometry.outer_length_m, geometry.cg_to_front_end_m)
         }

@@ -98,7 +98,7 @@ impl ForwardModel {
     /// The model of a case.
     pub fn new(evidence: &Evidence, cars: Cars) -> Self {
         let prior = Prior::new(evidence, &cars);
-        let side = evidence.damage.side;
+        let side = evidence.damage.struck_side();
         let start = StartPlace::of(evidence, &cars);
         let [from_x_m, from_y_m] = start.map_or([0.0; 2], |start| start.cg_m());
         let places = evidence.places();

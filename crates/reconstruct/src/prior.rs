@@ -234,18 +234,18 @@ impl Prior {
             range => self.open(Latent::StrikingSpeed, range, any),
         }
         // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
-        let turned = |[low, high]: Bounds| match towards(evidence.damage.side) > 0.0 {
+        let turned = |[low, high]: Bounds| match towards(evidence.damage.struck_side()) > 0.0 {
             true => [low, high],
             false => [high.map(|end| -end), low.map(|end| -end)],
         };
-        let by_side = match evidence.damage.side {
+        let by_side = match evidence.damage.struck_side() {
             Side::Front => normal(PI, 0.5, PI - 1.6, PI + 1.6),
             Side::Rear => normal(0.0, 0.3, -1.6, 1.6),
             Side::Left | Side::Right if self.is_pit => normal(0.30, 0.25, -0.5, 1.6),
             Side::Left | Side::Right => Distribution::Uniform { low: 0.0, high: 1.92 },
         };
         let by_damage = evidence.damage.angle().map(|angle| {
-            let mean = angle.value * towards(evidence.damage.side);
+            let mean = angle.value * towards(evidence.damage.struck_side());
             (PriorSource::Measured, normal(mean, angle.sigma, mean - PI, mean + PI))
         });
         let by_side = (PriorSource::Assumed, by_side);
@@ -264,7 +264,7 @@ impl Prior {
             let along = normal(value, sigma, value - 2.0, value + 2.0);
             self.add(Latent::ContactAlong, PriorSource::Measured, along);
         }
-        let across = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
+        let across = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.struck_side()));
         self.fixed.set(Latent::ContactAcross, across);
         // Its bounds are a range of the user, or those of the program.
         let source = match evidence.prior.restitution {

@@ -165,7 +165,7 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
         record.turn_yaw_rate();
     }
     let mut evidence = match &args.evidence {
-        Some(path) => Evidence::load(path).map_err(impactlab_study::StudyError::from)?,
+        Some(path) => Evidence::load_draft(path).map_err(impactlab_study::StudyError::from)?,
         None => {
             let name = args.file.file_name().unwrap_or_default();
             Evidence { case: name.to_string_lossy().into_owned(), ..Evidence::default() }
@@ -192,6 +192,8 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
     if before.is_some() {
         notes.push("the evidence had a record of this car already; it is replaced".to_owned());
     }
+    let lack = evidence.missing();
+    notes.extend(lack.map(|lack| format!("the evidence is not complete yet: {lack}")));
     if let Some(speed) = record.speed_before {
         notes.push(format!(
             "the speed before the crash is {:.2} m/s, recorded at {} s; what braking took after that is not in it, \

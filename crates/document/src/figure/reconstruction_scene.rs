@@ -147,8 +147,8 @@ fn contact_elements(
     let pose = Pose { x_m: 0.0, y_m: 0.0, yaw_rad: 0.0 };
     let unit = Quantity::Length.display_unit(units);
     let (name, style) = ("struck car at first contact", LineStyle::Dashed);
-    let depth_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
-    let at = |along_m: f64| match damage.side {
+    let depth_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.struck_side()));
+    let at = |along_m: f64| match damage.struck_side() {
         Side::Left | Side::Right => shown([along_m, depth_m]),
         Side::Front | Side::Rear => shown([depth_m, along_m]),
     };

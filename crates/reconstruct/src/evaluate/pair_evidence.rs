@@ -182,7 +182,7 @@ impl<R: Rng> Errors<R> {
         let value = rounded(self.normal(along_m, DAMAGE_SIGMA_M), 0.001);
         let along = Measured { value, sigma: DAMAGE_SIGMA_M };
         let depth_m = Some(rounded(depth_m, 0.001));
-        Damage { side, along_m: Some(along.into()), depth_m, angle_rad: None }
+        Damage { side: Some(side), along_m: Some(along.into()), depth_m, angle_rad: None }
     }
 
     fn rest(&mut self, [x_m, y_m, yaw_rad]: [f64; 3]) -> RestPose {

@@ -122,7 +122,7 @@ fn the_rest_and_the_speeds_are_those_of_the_record_in_the_axes_of_the_struck_car
     let rest = evidence.striking_rest.unwrap();
     assert!(is_near(rest.place_m().unwrap(), [46.0, -3.0], REST_SIGMA_M), "{rest:?}");
     let damage = evidence.damage;
-    assert_eq!(damage.side, Side::Right);
+    assert_eq!(damage.side, Some(Side::Right));
     assert!((damage.along().unwrap().value + 1.5).abs() < 4.0 * DAMAGE_SIGMA_M, "{damage:?}");
     let file = std::env::temp_dir().join(format!("impactlab-truth-{}.toml", std::process::id()));
     std::fs::write(&file, &truth).unwrap();

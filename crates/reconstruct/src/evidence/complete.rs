@@ -157,6 +157,7 @@ impl Fields for Lacking {
 mod tests {
     use super::*;
     use crate::evidence::{Edr, Mark, RestPose, VideoPosition};
+    use impactlab_core::collision::Side;
 
     #[test]
     fn nothing_is_run_from_a_form_that_nobody_has_filled_in() {
@@ -187,7 +188,9 @@ mod tests {
         let along = move |evidence: &mut Evidence| {
             evidence.damage.along_m = Some(Stated { value: Some(-1.5), sigma: None })
         };
-        assert_eq!(missing(along), "");
+        let text = missing(along);
+        assert!(text.contains("choose the struck side"), "{text}");
+        assert_eq!(missing(|evidence| evidence.damage.side = Some(Side::Right)), "");
         let text = missing(|evidence| evidence.striking_rest = Some(RestPose::default()));
         assert!(text.contains("striking car at rest has not been placed"), "{text}");
         assert_eq!(missing(|evidence| evidence.striking_rest = None), "");
@@ -236,6 +239,7 @@ mod tests {
         let mut evidence = Evidence::empty();
         let stated = |value: f64| Some(Stated { value: Some(value), sigma: None });
         evidence.damage.along_m = stated(-1.5);
+        evidence.damage.side = Some(Side::Front);
         evidence.rest = Some(RestPose { x_m: Some(30.0), y_m: Some(0.0), ..RestPose::default() });
         evidence.edr = Some(Edr {
             speed_before_m_s: stated(15.0),

@@ -16,10 +16,11 @@ pub const SECTION: Section = Section {
     title: "damage of the struck car",
     group: Group::Scene,
     is_required: true,
-    missing: "has not been placed: type where along the side the first contact was",
+    missing: "has not been placed: choose the struck side, and type where along it the first contact was",
 };
 
-const SIDE: Choice = Choice { key: "side", label: "struck side", is_required: true, none: "" };
+const SIDE: Choice =
+    Choice { key: "side", label: "struck side", is_required: true, none: "not known" };
 const ANGLE: Field = Field::new("angle", "angle of the cars", EVIDENCE_HEADING).turned();
 const ANGLE_SIGMA_FIELD: Sigma = Sigma::fixed(
     "angle_sigma",
@@ -30,11 +31,11 @@ const ANGLE_SIGMA_FIELD: Sigma = Sigma::fixed(
 );
 
 /// Where and in which direction the struck car was hit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Damage {
-    /// Struck side.
-    pub side: Side,
+    /// Struck side; `None` until it is entered.
+    pub side: Option<Side>,
     /// Middle of the first contact along that side, from the CG, m: forward on the left and the right
     /// side, to the left at front and rear.
     pub along_m: Option<Stated>,
@@ -45,16 +46,10 @@ pub struct Damage {
     pub angle_rad: Option<Stated>,
 }
 
-impl Default for Damage {
-    fn default() -> Self {
-        Self { side: Side::Right, along_m: None, depth_m: None, angle_rad: None }
-    }
-}
-
 impl Item for Damage {
     fn fields(&mut self, visitor: &mut impl Fields) {
         let Self { side, along_m, depth_m, angle_rad } = self;
-        visitor.choice(&SIDE, side);
+        visitor.optional_choice(&SIDE, side);
         let [x, y] = [
             Field::new("x", "contact ahead of the CG", CONTACT_X),
             Field::new("y", "contact to the left of the CG", CONTACT_Y).turned(),
@@ -66,23 +61,25 @@ impl Item for Damage {
     }
 }
 
-fn is_flank(side: Side) -> bool {
-    matches!(side, Side::Left | Side::Right)
+/// Whether the contact is told along a flank, as it is until the side is known.
+fn is_flank(side: Option<Side>) -> bool {
+    matches!(side, None | Some(Side::Left | Side::Right))
 }
 
-fn along_sigma(side: Side) -> Sigma {
+fn along_sigma(side: Option<Side>) -> Sigma {
     let key = if is_flank(side) { "x_sigma" } else { "y_sigma" };
     let source = "a third of the width of a usual dent; assumed";
     Sigma::fixed(key, "±", POSITION_SIGMA, 0.10, source)
 }
 
 /// The coordinate at right angles to a side, on that side of the CG.
-fn beyond_side(depth: Field, side: Side) -> Field {
+fn beyond_side(depth: Field, side: Option<Side>) -> Field {
     let (limits, expected) = match side {
-        Side::Left => ([0.0, f64::INFINITY], "a point on the left of the car"),
-        Side::Right => ([f64::NEG_INFINITY, 0.0], "a point on the right of the car"),
-        Side::Front => ([0.0, f64::INFINITY], "a point on the front of the car"),
-        Side::Rear => ([f64::NEG_INFINITY, 0.0], "a point on the rear of the car"),
+        None => return depth,
+        Some(Side::Left) => ([0.0, f64::INFINITY], "a point on the left of the car"),
+        Some(Side::Right) => ([f64::NEG_INFINITY, 0.0], "a point on the right of the car"),
+        Some(Side::Front) => ([0.0, f64::INFINITY], "a point on the front of the car"),
+        Some(Side::Rear) => ([f64::NEG_INFINITY, 0.0], "a point on the rear of the car"),
     };
     Field { range: depth.range.within(limits), ..depth }.with_expected(expected)
 }
@@ -98,9 +95,15 @@ impl Damage {
         ANGLE_SIGMA_FIELD.resolve(self.angle_rad)
     }
 
+    /// The struck side, and the right one until it is entered: drawn and shown beforehand is a car that may be hit
+    /// there, but nothing is computed of evidence without a side ([`Evidence::missing`](crate::evidence::Evidence::missing)).
+    pub fn struck_side(&self) -> Side {
+        self.side.unwrap_or(Side::Right)
+    }
+
     /// The damage of another side, of which no place is known: coordinates are of one side.
     #[must_use]
-    pub fn on_side(self, side: Side) -> Self {
+    pub fn on_side(self, side: Option<Side>) -> Self {
         let along_m = self.along_m.filter(|_| is_flank(self.side) == is_flank(side));
         Self { side, along_m, depth_m: None, ..self }
     }

@@ -262,10 +262,12 @@ impl Evidence {
             (self.start != Start::default(), start::SECTION.title),
             (!self.speeds.is_empty(), speed::SECTION.title),
         ];
+        // Cases of earlier versions have a side in every form.
+        let without_side = Damage { side: None, ..self.damage };
         let of_collision = [
             (self.striking_car != CarEvidence::default(), car::STRIKING.title),
             (self.weighing.is_some(), weighing::SECTION.title),
-            (self.damage != Damage::default(), damage::SECTION.title),
+            (without_side != Damage::default(), damage::SECTION.title),
             (self.skid_before.is_some(), skid::STRUCK.title),
             (self.striking_skid_before.is_some(), skid::STRIKING.title),
             (self.striking_rest.is_some(), rest::STRIKING.title),

@@ -143,20 +143,35 @@ impl Evidence {
         Self::from_toml(TomlFile { path, text: &text })
     }
 
+    /// Reads an evidence file that may still lack what nothing can stand in for, such as one with the record of a
+    /// recorder alone; [`Evidence::missing`] says what that is.
+    ///
+    /// # Errors
+    /// As for [`Evidence::load`], but not for a key or a table that is missing.
+    pub fn load_draft(path: &Path) -> Result<Self, TomlError> {
+        let text = TomlFile::read(path)?;
+        Self::read(TomlFile { path, text: &text }, true)
+    }
+
     /// Reads the text of an evidence file.
     ///
     /// # Errors
     /// The errors of [`Evidence::load`] except [`TomlError::File`].
     pub fn from_toml(file: TomlFile<'_>) -> Result<Self, TomlError> {
+        Self::read(file, false)
+    }
+
+    /// - `is_draft`: whether it may lack what nothing can stand in for.
+    fn read(file: TomlFile<'_>, is_draft: bool) -> Result<Self, TomlError> {
         let root = file.parse()?;
         let mut top = TomlTable::root(file, &root);
         let case = top.string("case")?.unwrap_or_else(|| file.path.display().to_string());
         let kind = kind_of(file, &mut top)?;
         let mut evidence = Self { case, kind, ..Self::default() };
-        let mut reader = Reader { table: top, error: None };
+        let mut reader = Reader { table: top, error: None, is_draft };
         evidence.items(&mut reader);
         let top = reader.end()?;
-        if evidence.lacks_start() {
+        if !is_draft && evidence.lacks_start() {
             return Err(top.missing(&format!("{}.x_m", start::SECTION.key)));
         }
         top.finish().map(|()| evidence)
@@ -190,6 +205,8 @@ fn kind_of(file: TomlFile<'_>, top: &mut TomlTable<'_>) -> Result<EvidenceKind, 
 struct Reader<'a> {
     table: TomlTable<'a>,
     error: Option<TomlError>,
+    /// Whether it may lack what nothing can stand in for.
+    is_draft: bool,
 }
 
 impl<'a> Reader<'a> {
@@ -215,12 +232,13 @@ impl<'a> Reader<'a> {
 
 impl Items for Reader<'_> {
     fn item(&mut self, section: &'static Section, _: Option<usize>, item: &mut impl Item) {
+        let is_draft = self.is_draft;
         let found = self.step(|top| {
-            let table = match section.is_required {
+            let table = match section.is_required && !is_draft {
                 true => Some(top.table(section.key)?),
                 false => top.optional_table(section.key)?,
             };
-            table.map_or(Ok(None), read_item)
+            table.map_or(Ok(None), |table| read_item(table, is_draft))
         });
         if let Some(found) = found {
             *item = found;
@@ -228,13 +246,19 @@ impl Items for Reader<'_> {
     }
 
     fn optional<T: Item>(&mut self, section: &'static Section, item: &mut Option<T>) {
-        *item = self.step(|top| top.optional_table(section.key)?.map_or(Ok(None), read_item));
+        let is_draft = self.is_draft;
+        *item = self.step(|top| {
+            let table = top.optional_table(section.key)?;
+            table.map_or(Ok(None), |table| read_item(table, is_draft))
+        });
         *item = item.take().filter(|item| !item.is_empty());
     }
 
     fn many<T: Item>(&mut self, section: &'static Section, items: &mut Vec<T>) {
+        let is_draft = self.is_draft;
         let found = self.step(|top| {
-            let found = top.tables(section.key)?.into_iter().map(read_item);
+            let tables = top.tables(section.key)?.into_iter();
+            let found = tables.map(|table| read_item(table, is_draft));
             let found: Vec<T> = found.filter_map(Result::transpose).collect::<Result<_, _>>()?;
             match twice(&found) {
                 None => Ok(Some(found)),
@@ -248,16 +272,18 @@ impl Items for Reader<'_> {
 }
 
 /// Reads an item; `None` if the table says that it is not known.
-fn read_item<T: Item>(mut table: TomlTable<'_>) -> Result<Option<T>, TomlError> {
+///
+/// - `is_draft`: whether it may lack what nothing can stand in for.
+fn read_item<T: Item>(mut table: TomlTable<'_>, is_draft: bool) -> Result<Option<T>, TomlError> {
     let is_known = table.flag("known")?.unwrap_or(true);
     let mut item = T::default();
-    let mut reader = Reader { table, error: None };
+    let mut reader = Reader { table, error: None, is_draft };
     item.fields(&mut reader);
     let table = reader.end()?;
     if !is_known {
         return table.finish().map(|()| None);
     }
-    if let Some(lack) = lack_of(&item) {
+    if let Some(lack) = lack_of(&item).filter(|_| !is_draft) {
         return Err(table.missing(&lack.key));
     }
     table.finish().map(|()| Some(item))
@@ -327,8 +353,9 @@ impl Fields for Reader<'_> {
 
     fn optional_choice<W: Word>(&mut self, choice: &Choice, word: &mut Option<W>) {
         let words: Vec<&str> = W::ALL.iter().map(|word| word.word()).collect();
+        let is_required = choice.is_required && !self.is_draft;
         *word = self.step(|table| match table.choice(choice.key, &words)? {
-            None if choice.is_required => Err(table.missing(choice.key)),
+            None if is_required => Err(table.missing(choice.key)),
             idx => Ok(idx.map(|idx| W::ALL[idx])),
         });
     }

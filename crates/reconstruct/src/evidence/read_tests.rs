@@ -154,6 +154,33 @@ fn an_error_names_file_line_key_and_what_is_expected() {
     }
 }
 
+/// Evidence with the record of a recorder alone, to which another car's is added.
+#[test]
+fn a_draft_may_lack_what_a_reconstruction_needs_and_nobody_invents_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("draft.toml");
+    let draft = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        Evidence::load_draft(&path).map_err(|error| error.to_string())
+    };
+    let edr = "[edr]\nspeed_before_km_h = 72\n";
+    let found = draft(edr).unwrap();
+    assert_eq!((found.damage.side, found.damage.along_m), (None, None));
+    let text = found.to_toml();
+    assert!(!text.contains("side"), "{text}");
+    assert_eq!(draft(&text).unwrap(), found);
+    let lack = found.missing().unwrap_or_default();
+    assert!(lack.contains("damage of the struck car"), "{lack}");
+    assert!(read(&text).unwrap_err().contains("damage.side is missing"), "{text}");
+    // What is said is kept, and a slip is one in a draft, too.
+    let sided = draft(&format!("{edr}[damage]\nside = \"front\"\n")).unwrap();
+    assert_eq!(sided.damage.side, Some(impactlab_core::collision::Side::Front));
+    assert!(sided.to_toml().contains("side = \"front\""));
+    let slip = draft(&format!("{edr}[damage]\nsite = \"front\"\n")).unwrap_err();
+    assert!(slip.contains("damage.site is not known"), "{slip}");
+    assert_eq!(draft(CASE).unwrap(), read(CASE).unwrap());
+}
+
 #[test]
 fn a_mark_that_stands_twice_is_refused() {
     let mark = "[[mark]]\nwheel = \"RR\"\nkind = \"locked\"\npoints_m = [[1.0, -0.7], [6, -0.8]]\n";

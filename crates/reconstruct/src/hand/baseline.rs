@@ -114,7 +114,7 @@ fn combined(a: Measured, b: Measured) -> Measured {
 fn closing(evidence: &Evidence, cars: &Cars) -> Measured {
     let damage = &evidence.damage;
     let along_m = damage.along().map_or(0.0, |along| along.value);
-    let recorded = match damage.side {
+    let recorded = match damage.struck_side() {
         Side::Left | Side::Right => evidence.recorder().delta_v_y(),
         Side::Front | Side::Rear => evidence.recorder().delta_v_x(),
     };

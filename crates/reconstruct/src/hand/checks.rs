@@ -244,7 +244,7 @@ fn has_four_locked_marks(marks: &[Mark], way_m: f64) -> bool {
 /// Heading of the striking car at the impact, by the damage or by the struck end.
 fn heading(evidence: &Evidence) -> Option<Measured> {
     let by_end = |value| Measured { value, sigma: 0.1 };
-    evidence.damage.angle().or(match evidence.damage.side {
+    evidence.damage.angle().or(match evidence.damage.struck_side() {
         Side::Rear => Some(by_end(0.0)),
         Side::Front => Some(by_end(PI)),
         Side::Left | Side::Right => None,
@@ -255,8 +255,8 @@ fn heading(evidence: &Evidence) -> Option<Measured> {
 fn striking_at_contact_m(evidence: &Evidence, cars: &Cars) -> Option<[f64; 2]> {
     let damage = &evidence.damage;
     let along_m = damage.along()?.value;
-    let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
-    let [x_m, y_m] = match damage.side {
+    let across_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.struck_side()));
+    let [x_m, y_m] = match damage.struck_side() {
         Side::Left | Side::Right => [along_m, across_m],
         Side::Front | Side::Rear => [across_m, along_m],
     };
