@@ -144,6 +144,30 @@ fn a_compass_heading_becomes_a_yaw_angle() {
     );
 }
 
+/// An angle from another axis turns with the path; one along an axis that does not turn may be that of a compass, too.
+#[test]
+fn a_yaw_angle_from_another_axis_is_turned() {
+    check(&log(PATH, |row| row[3] += FRAC_PI_2), &[("Turn yaw by −90 deg", "yaw_offset=-90:deg")]);
+    check(&log(SI, |row| row[3] -= FRAC_PI_2), &[("Turn yaw by 90 deg", "yaw_offset=90:deg")]);
+    let straight = log(PATH, |row| {
+        (row[1], row[2], row[3]) = (SPEED_M_S * row[0], 0.0, FRAC_PI_2);
+    });
+    let loaded = read(&straight, &ColumnMap::default()).unwrap();
+    let shown: Vec<String> = corrections(&loaded).iter().map(Correction::to_string).collect();
+    assert_eq!(shown, ["headings=compass", "yaw_offset=-90:deg"]);
+    for map in shown {
+        let corrected = read(&straight, &map.parse().unwrap()).unwrap();
+        assert_eq!(corrections(&corrected), [], "{map}");
+        let yaw = corrected.series.get(Channel::Yaw).unwrap();
+        assert!(yaw.iter().all(|yaw| yaw.abs() < 1e-9), "{map}: {yaw:?}");
+    }
+    // A car that drifts, or another axis: it is said, and read.
+    let drift = read(&log(PATH, |row| row[3] += 0.7), &ColumnMap::default()).unwrap();
+    assert!(!drift.notes.iter().any(Note::is_contradiction), "{:?}", drift.notes);
+    let said = |note: &Note| note.is_doubt() && note.to_string().contains("yaw_offset=-40:deg");
+    assert!(drift.notes.iter().any(said), "{:?}", drift.notes);
+}
+
 #[test]
 fn units_that_are_off_get_their_unit() {
     let yaw = log("time_s,x_m,y_m,yaw", |row| row[3] = row[3].to_degrees());

@@ -341,7 +341,7 @@ impl From<ColumnMap> for String {
 fn short_names() -> String {
     let names: Vec<_> = Channel::ALL.iter().map(|channel| channel.short_name()).collect();
     format!(
-        "{}; or separator, decimal, thousands, sheet, deck, header, units, shift, y_axis, headings, velocities",
+        "{}; or separator, decimal, thousands, sheet, deck, header, units, shift, y_axis, headings, yaw_offset, antenna, velocities",
         names.join(", ")
     )
 }
@@ -376,6 +376,7 @@ mod tests {
         for text in [
             "sheet=2,header=5,units=6,shift=-0.012:s,y_axis=right,velocities=world,time=1,fx=2+5-7:kN",
             "header=none,fx=-3:kN,fy=none",
+            "headings=compass,yaw_offset=-90:deg,yaw=4:deg",
             "sheet=Messung 2,fx=Kraft-X",
             "time=5:s+6:µs,x=east(2 3),y=north(2 3),yaw=quaternion(7 8 9 10)",
             "fx=2:N s,fy=-3:kN s",
@@ -405,6 +406,10 @@ mod tests {
                 r#"thousands="dot" is not understood, expected point, comma, apostrophe or space"#,
             ),
             ("units=6,units=7", "units is given twice"),
+            (
+                "yaw_offset=90",
+                r#"yaw_offset="90" is not understood, expected an angle, e.g. yaw_offset=-90:deg"#,
+            ),
             ("fx=2+0", "fx is taken from column 0, but columns are counted from 1"),
         ] {
             assert_eq!(text.parse::<ColumnMap>().unwrap_err().to_string(), message);

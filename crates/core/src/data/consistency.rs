@@ -6,40 +6,25 @@
 //! yaw rate   ψ against ∫r dt, both about their means: the slope of a line through the origin
 //! compass    course + ψ = π/2 wherever the vehicle drives and the course turns
 //! mirror     course + ψ = 0 likewise
+//! offset     ψ − course = ±π/2 wherever the vehicle drives
 //! held       at speed most places stand in several rows
 //! ```
+//!
+//! A path along an axis that does not turn leaves open whether ψ is that of a compass or has an offset; both are then
+//! told.
 //!
 //! A vehicle that spins moves in directions that have nothing to do with its heading; the path is compared
 //! with the heading only where one of these relations holds all along while the course turns, which no spin
 //! does.
 
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
-use crate::data::yaw_rate::{MOVING_M_S, against_yaw_rate, speed_m_s};
+use crate::data::course::{DRIVING_M_S, OfCourse, against_path, at_the_start, to_a_side};
+use crate::data::yaw_rate::against_yaw_rate;
 use crate::data::{Channel, TimeSeries};
-use crate::numerics::{continued_rad, wrap_angle_rad};
 
-/// Windows into which a motion is divided.
-const N_WINDOWS: usize = 24;
 /// Deviation of a slope from a known factor.
 pub(super) const FACTOR_REACH: f64 = 0.15;
-/// Speed from which the direction of motion is known from positions, m/s.
-const DRIVING_M_S: f64 = 3.0;
-/// Turn of the course from which it can tell a compass or a mirror, rad.
-const LEAST_COURSE_TURN_RAD: f64 = 0.25;
-/// The same from which it can tell degrees that were read as radians, and the share of it within which the yaw
-/// angle then has to follow. Of 1426 computed motions, most of them spins, none comes nearer than 0.17.
-const LEAST_UNIT_TURN_RAD: f64 = 0.05;
-const UNIT_SHARE_OF_TURN: f64 = 0.1;
-/// Deviation of a relation between course and heading up to which it holds all along, rad.
-const RELATION_RAD: f64 = 0.12;
-/// Way at the start over which the direction of motion is taken, m.
-const FIRST_WAY_M: f64 = 1.0;
-/// Yaw rate below which a vehicle does not turn there, rad/s.
-const STEADY_RAD_S: f64 = 0.6;
-/// Angle between course and heading there from which it is looked at, rad.
-const LEAST_OFF_RAD: f64 = 0.5;
 /// Share of places that stand in several rows from which they are held.
 const HELD: f64 = 0.5;
 /// Steps of the resolution by which a place has to differ from the next for it to be a fix.
@@ -59,6 +44,16 @@ pub enum Contradiction {
     YawRateUnrelated,
     /// The yaw angle is a compass heading, clockwise from the Y axis.
     Compass,
+    /// The yaw angle is counted in the right sense, but from another axis than X.
+    Offset {
+        /// How far it is to the left of the direction of motion, rad.
+        angle_rad: f64,
+    },
+    /// One of the two; the path does not turn, so that it does not tell which.
+    CompassOrOffset {
+        /// How far it is to the left of the direction of motion, rad.
+        angle_rad: f64,
+    },
     /// The vehicle turns to one side and its path to the other.
     Mirrored {
         /// The position that has the wrong sign if the yaw angle has the right one.
@@ -84,116 +79,18 @@ const FACTORS: [(f64, &str); 3] =
 pub fn contradictions(series: &TimeSeries) -> Vec<Contradiction> {
     let held = held_positions(series);
     // The direction of a path of steps is not that of the motion.
-    let by_path = || against_path(series).or_else(|| at_the_start(series));
+    let by_path = || match against_path(series) {
+        OfCourse::Contradiction(found) => Some(found),
+        OfCourse::Along(_) => None,
+        OfCourse::Open => at_the_start(series),
+    };
     let by_path = if held.is_some() { None } else { by_path() };
     [held, against_yaw_rate(series), by_path].into_iter().flatten().collect()
 }
 
-/// Indices of the ends of the windows.
-fn windows(n_samples: usize) -> Option<impl Iterator<Item = (usize, usize)>> {
-    let n_steps = n_samples.checked_sub(1).filter(|n| *n >= N_WINDOWS)?;
-    Some((0..N_WINDOWS).map(move |i| (i * n_steps / N_WINDOWS, (i + 1) * n_steps / N_WINDOWS)))
-}
-
-/// Course and heading in the middle of each window in which the vehicle drives.
-fn courses(series: &TimeSeries) -> Option<Vec<(f64, f64)>> {
-    let time_s = series.time_s();
-    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
-    let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
-    let speed = speed_m_s(series);
-    let is_moving = |i: usize| speed.as_ref().is_none_or(|speed| speed[i] >= MOVING_M_S);
-    let mut pairs = Vec::new();
-    for (from, to) in windows(time_s.len())?.filter(|(from, to)| is_moving(*from) && is_moving(*to))
-    {
-        let moved_m = [x[to] - x[from], y[to] - y[from]];
-        let duration_s = time_s[to] - time_s[from];
-        if moved_m[0].hypot(moved_m[1]) < DRIVING_M_S * duration_s {
-            continue;
-        }
-        pairs.push((moved_m[1].atan2(moved_m[0]), (yaw_rad[from] + yaw_rad[to]) / 2.0));
-    }
-    Some(pairs)
-}
-
-fn against_path(series: &TimeSeries) -> Option<Contradiction> {
-    let pairs = courses(series)?;
-    if pairs.len() < N_WINDOWS / 4 {
-        return None;
-    }
-    let course_rad = continued_rad(&pairs.iter().map(|(course, _)| *course).collect::<Vec<_>>());
-    let turned = |values: &[f64]| {
-        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-        values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low
-    };
-    let course_turn = turned(&course_rad);
-    let in_degrees = yaw_unit(&course_rad, &pairs, course_turn);
-    if course_turn < LEAST_COURSE_TURN_RAD {
-        return in_degrees;
-    }
-    // A relation `course − sign · ψ = constant`, with the constant and how far it is off at most.
-    let relation = |sign: f64| {
-        let off: Vec<f64> =
-            course_rad.iter().zip(&pairs).map(|(course, (_, yaw))| course - sign * yaw).collect();
-        let mean = off.iter().sum::<f64>() / off.len() as f64;
-        (mean, off.iter().map(|off| (off - mean).abs()).fold(0.0, f64::max))
-    };
-    let [(_, along), (sum, against)] = [relation(1.0), relation(-1.0)];
-    if along < RELATION_RAD.max(against / 2.0) {
-        return None;
-    }
-    let is = |angle_rad: f64| wrap_angle_rad(sum - angle_rad).abs() < 2.0 * RELATION_RAD;
-    if against < RELATION_RAD {
-        return match () {
-            () if is(FRAC_PI_2) => Some(Contradiction::Compass),
-            () if is(0.0) => Some(Contradiction::Mirrored { axis: Channel::Y }),
-            () if is(PI) => Some(Contradiction::Mirrored { axis: Channel::X }),
-            () => None,
-        };
-    }
-    in_degrees
-}
-
-/// The direction of the first metre, over which a vehicle that does not turn moves along its heading. One that
-/// slides or drives backwards may not; that its heading is just that of a compass is no chance.
-fn at_the_start(series: &TimeSeries) -> Option<Contradiction> {
-    let time_s = series.time_s();
-    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
-    let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
-    let moved_m = |i: usize| [x[i] - x[0], y[i] - y[0]];
-    let is_far = |i: &usize| moved_m(*i)[0].hypot(moved_m(*i)[1]) >= FIRST_WAY_M;
-    let end = (1..time_s.len()).find(is_far)?;
-    let duration_s = time_s[end] - time_s[0];
-    let is_turning = (yaw_rad[end] - yaw_rad[0]).abs() > STEADY_RAD_S * duration_s;
-    if is_turning || FIRST_WAY_M < DRIVING_M_S * duration_s {
-        return None;
-    }
-    let course_rad = moved_m(end)[1].atan2(moved_m(end)[0]);
-    let heading_rad = (yaw_rad[0] + yaw_rad[end]) / 2.0;
-    let is_compass = wrap_angle_rad(course_rad + heading_rad - FRAC_PI_2).abs() < RELATION_RAD;
-    let off_rad = wrap_angle_rad(course_rad - heading_rad).abs();
-    let is_off = (LEAST_OFF_RAD..PI - LEAST_OFF_RAD).contains(&off_rad);
-    (is_off && is_compass).then_some(Contradiction::Compass)
-}
-
-/// A yaw that turns with the path, but by 57.3 times as much or as little: degrees that were read as radians, or the
-/// other way round. No vehicle spins so often while its path turns by so much, or keeps to its path in such a way.
-fn yaw_unit(course_rad: &[f64], pairs: &[(f64, f64)], course_turn: f64) -> Option<Contradiction> {
-    let reach = RELATION_RAD.min(UNIT_SHARE_OF_TURN * course_turn);
-    let is_factor = |factor: &f64| {
-        let off = |(course, (_, yaw)): (&f64, &(f64, f64))| course - yaw / factor;
-        let off: Vec<f64> = course_rad.iter().zip(pairs).map(off).collect();
-        let mean = off.iter().sum::<f64>() / off.len() as f64;
-        let is_along =
-            course_turn > LEAST_UNIT_TURN_RAD && off.iter().all(|off| (off - mean).abs() < reach);
-        is_along && wrap_angle_rad(mean).abs() < 2.0 * RELATION_RAD
-    };
-    let factor = [1.0_f64.to_degrees(), 1.0_f64.to_radians()].into_iter().find(is_factor)?;
-    Some(Contradiction::YawUnit { factor })
-}
-
 /// Positions of which each stands in several rows at speed. Those of a coarse resolution do too, but go on by
 /// one step of it; between fixes a vehicle goes much farther than that.
-fn held_positions(series: &TimeSeries) -> Option<Contradiction> {
+pub(super) fn held_positions(series: &TimeSeries) -> Option<Contradiction> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
     let (mut last, mut rows, mut finest_m) = (0, Vec::new(), f64::INFINITY);
@@ -229,6 +126,10 @@ impl Contradiction {
             Self::YawRate { .. } => "check both columns and their units",
             Self::YawRateUnrelated => "check which columns they are",
             Self::Compass => "turn the headings into yaw angles",
+            Self::Offset { .. } => "count the yaw angle from the X axis",
+            Self::CompassOrOffset { .. } => {
+                "turn the headings into yaw angles, or count them from the X axis"
+            }
             Self::Mirrored { .. } => "change the sign of one of them",
             Self::YawUnit { .. } => "check its unit",
             Self::Held { .. } => "keep one row for each",
@@ -263,6 +164,17 @@ impl fmt::Display for Contradiction {
                 "the yaw angle is a compass heading, clockwise from north, over a path with x to the \
                  east"
             ),
+            Self::Offset { angle_rad } => write!(
+                f,
+                "the yaw angle is {} of the direction of motion all along: it is counted from another axis",
+                to_a_side(angle_rad)
+            ),
+            Self::CompassOrOffset { angle_rad } => write!(
+                f,
+                "the yaw angle is {} of the direction of motion: a compass heading, clockwise from north, or an angle \
+                 that is counted from another axis, which a path that does not turn leaves open",
+                to_a_side(angle_rad)
+            ),
             Self::Mirrored { .. } => {
                 write!(f, "the path turns to one side where the yaw angle turns to the other")
             }
@@ -287,7 +199,11 @@ impl fmt::Display for Contradiction {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
     use super::*;
+    use crate::data::course::offset_note;
+    use crate::numerics::wrap_angle_rad;
 
     /// A bend of 40 m radius at 15 m/s, driven with the heading along the path.
     fn bend(change: impl Fn(Channel, f64) -> f64) -> TimeSeries {
@@ -373,6 +289,52 @@ mod tests {
         assert_eq!(motion(&|angle| 57.3 * angle * (2.0 - 16.0 * angle)), []);
     }
 
+    /// A yaw angle that is counted from another axis turns with the path, which that of a compass does not.
+    #[test]
+    fn an_offset_is_told_from_a_compass_by_the_turn_of_the_path() {
+        for quarter in [FRAC_PI_2, -FRAC_PI_2] {
+            let found = changed(Channel::Yaw, |yaw| yaw + quarter);
+            let [Contradiction::Offset { angle_rad }] = found[..] else { panic!("{found:?}") };
+            assert!((angle_rad - quarter).abs() < 0.01, "{angle_rad}");
+            let side = if quarter > 0.0 { "90 deg to the left" } else { "90 deg to the right" };
+            assert!(found[0].to_string().contains(side), "{}", found[0]);
+        }
+        // A car that drives backwards along the bend, and one that drifts along it.
+        assert_eq!(changed(Channel::Yaw, |yaw| yaw + PI), []);
+        assert_eq!(changed(Channel::Yaw, |yaw| yaw + 0.7), []);
+        let drift = bend(|of, value| if of == Channel::Yaw { value + 0.7 } else { value });
+        let note = offset_note(&drift).expect("a remark").to_string();
+        assert!(
+            note.contains("40 deg to the left") && note.contains("yaw_offset=-40:deg"),
+            "{note}"
+        );
+        assert_eq!(offset_note(&bend(|_, value| value)), None);
+    }
+
+    /// Along an axis a compass and an offset are the same; at an angle to the axes they are not.
+    #[test]
+    fn a_straight_drive_tells_an_offset_where_a_compass_would_be_another() {
+        let time_s: Vec<f64> = (0..100).map(|i| f64::from(i) * 0.02).collect();
+        let drive = |course_rad: f64, yaw_rad: f64| {
+            let mut series = TimeSeries::new(time_s.clone()).unwrap();
+            let along = |per_second: f64| time_s.iter().map(|t| per_second * t).collect();
+            let (sin, cos) = course_rad.sin_cos();
+            series.insert(Channel::X, along(15.0 * cos)).unwrap();
+            series.insert(Channel::Y, along(15.0 * sin)).unwrap();
+            series.insert(Channel::Yaw, vec![yaw_rad; time_s.len()]).unwrap();
+            contradictions(&series)
+        };
+        for (course_rad, yaw_rad) in [(0.0, FRAC_PI_2), (FRAC_PI_2, 0.0), (PI, -FRAC_PI_2)] {
+            let found = drive(course_rad, yaw_rad);
+            let is_open = matches!(found[..], [Contradiction::CompassOrOffset { .. }]);
+            assert!(is_open, "{course_rad}: {found:?}");
+        }
+        let offset = drive(0.6, 0.6 + FRAC_PI_2);
+        assert!(matches!(offset[..], [Contradiction::Offset { .. }]), "{offset:?}");
+        assert_eq!(drive(0.2, FRAC_PI_2 - 0.2), [Contradiction::Compass]);
+        assert_eq!(drive(0.6, 0.6), []);
+    }
+
     #[test]
     fn positions_that_are_held_are_found() {
         let mut series = bend(|_, value| value);
@@ -400,7 +362,9 @@ mod tests {
         };
         let turned = |t: f64| -1.2 * (t - 0.2).max(0.0);
         assert_eq!(motion(&turned), []);
-        assert_eq!(motion(&|t| FRAC_PI_2 - turned(t)), [Contradiction::Compass]);
+        // Along an axis it may have an offset as well; the path turns too little to tell.
+        let open = motion(&|t| FRAC_PI_2 - turned(t));
+        assert!(matches!(open[..], [Contradiction::CompassOrOffset { .. }]), "{open:?}");
         // A car that reverses has its heading behind it.
         assert_eq!(motion(&|t| PI + turned(t)), []);
     }

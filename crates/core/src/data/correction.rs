@@ -31,6 +31,8 @@ pub(super) enum Change {
     Column(Channel, ColumnSource),
     /// Whether yaw angles are compass headings.
     CompassHeadings(bool),
+    /// What is added to every yaw angle, rad.
+    YawOffset(f64),
     /// The axes of the velocities.
     Velocities(VelocityAxes),
     /// What is added to every instant, s.
@@ -112,6 +114,7 @@ impl Correction {
             match change {
                 Change::Column(channel, source) => map.insert(*channel, source.clone()),
                 Change::CompassHeadings(is_compass) => map.settings.compass_headings = *is_compass,
+                Change::YawOffset(offset_rad) => map.settings.yaw_offset_rad = Some(*offset_rad),
                 Change::Velocities(axes) => map.settings.velocities = Some(*axes),
                 Change::TimeShift(shift_s) => map.settings.time_shift_s = Some(*shift_s),
                 Change::DecimalComma(is_comma) => map.settings.decimal_comma = Some(*is_comma),
@@ -129,6 +132,7 @@ impl Correction {
             match change {
                 Change::Column(..) => {}
                 Change::CompassHeadings(_) => settings.compass_headings = earlier.compass_headings,
+                Change::YawOffset(_) => settings.yaw_offset_rad = earlier.yaw_offset_rad,
                 Change::Velocities(_) => settings.velocities = earlier.velocities,
                 Change::TimeShift(_) => settings.time_shift_s = earlier.time_shift_s,
                 Change::DecimalComma(_) => settings.decimal_comma = earlier.decimal_comma,
@@ -164,6 +168,9 @@ impl fmt::Display for Correction {
                 Change::Column(channel, source) => write!(f, "{}={source}", channel.short_name()),
                 Change::CompassHeadings(true) => f.write_str("headings=compass"),
                 Change::CompassHeadings(false) => f.write_str("headings=yaw"),
+                Change::YawOffset(offset_rad) => {
+                    write!(f, "yaw_offset={}:deg", offset_rad.to_degrees())
+                }
                 Change::Velocities(VelocityAxes::Body) => f.write_str("velocities=body"),
                 Change::Velocities(VelocityAxes::World) => f.write_str("velocities=world"),
                 Change::TimeShift(shift_s) => write!(f, "shift={shift_s}:s"),

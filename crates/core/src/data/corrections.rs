@@ -2,6 +2,7 @@
 //! file before it is offered: what it is to correct must be gone, and nothing else may come in its place.
 
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 use crate::data::consistency::FACTOR_REACH;
 use crate::data::correction::Change;
@@ -109,6 +110,8 @@ enum Edit {
     Unit(Channel, Unit),
     /// Yaw angles are compass headings if they were taken as yaw angles, and the other way round.
     Headings,
+    /// Yaw angles are so much larger, rad.
+    Offset(f64),
     /// The velocities are in the other axes.
     Axes,
 }
@@ -151,6 +154,10 @@ impl Reading<'_> {
                     column.terms.iter_mut().for_each(|term| term.unit = unit);
                 }
                 Edit::Headings => settings.compass_headings = !settings.compass_headings,
+                Edit::Offset(angle_rad) => {
+                    let before_rad = settings.yaw_offset_rad.unwrap_or(0.0);
+                    settings.yaw_offset_rad = Some(before_rad + angle_rad);
+                }
                 Edit::Axes => settings.velocities = Some(other_axes(&settings)),
             }
         }
@@ -187,6 +194,8 @@ impl Reading<'_> {
             vec![vec![yaw], vec![yaw, rate]]
         };
         let degrees = || angles("deg", "deg/s");
+        // What is at a right angle to the left of the motion is turned to the right.
+        let quarter = |angle_rad: f64| vec![vec![Edit::Offset(-FRAC_PI_2.copysign(angle_rad))]];
         let mirrored_place = |axis, velocity| {
             let place = Edit::Mirror(axis);
             vec![vec![place], vec![place, Edit::Mirror(velocity)]]
@@ -194,6 +203,10 @@ impl Reading<'_> {
         match finding {
             Finding::Contradiction(found) => match found {
                 Contradiction::Compass => vec![vec![vec![Edit::Headings]]],
+                Contradiction::Offset { angle_rad } => vec![quarter(angle_rad)],
+                Contradiction::CompassOrOffset { angle_rad } => {
+                    vec![vec![vec![Edit::Headings]], quarter(angle_rad)]
+                }
                 Contradiction::Mirrored { axis: X } => vec![mirrored_place(X, Vx)],
                 Contradiction::Mirrored { .. } => vec![mirrored_place(Y, Vy), mirrored_yaw()],
                 Contradiction::YawUnit { factor } if factor < 1.0 => vec![angles("rad", "rad/s")],
@@ -208,6 +221,7 @@ impl Reading<'_> {
                         let both = vec![Edit::Mirror(Vx), Edit::Mirror(Vy)];
                         let groups = [
                             vec![vec![Edit::Headings]],
+                            [quarter(1.0), quarter(-1.0)].concat(),
                             vec![vec![Edit::Mirror(Vy)], both],
                             mirrored_place(Y, Vy),
                             mirrored_yaw(),
@@ -280,6 +294,11 @@ impl Reading<'_> {
         if edited.settings.compass_headings != self.settings.compass_headings {
             changes.push(Change::CompassHeadings(edited.settings.compass_headings));
         }
+        let offset_rad = edited.settings.yaw_offset_rad;
+        if let Some(offset_rad) = offset_rad.filter(|_| offset_rad != self.settings.yaw_offset_rad)
+        {
+            changes.push(Change::YawOffset(offset_rad));
+        }
         if let Some(axes) = edited.settings.velocities.filter(|_| edits.contains(&Edit::Axes)) {
             changes.push(Change::Velocities(axes));
         }
@@ -314,6 +333,11 @@ impl Reading<'_> {
                     false => "heading is a compass heading".to_owned(),
                     true => "heading is a yaw angle".to_owned(),
                 }),
+                Edit::Offset(angle_rad) => {
+                    let sign = if angle_rad < 0.0 { "−" } else { "" };
+                    parts
+                        .push(format!("turn yaw by {sign}{:.0} deg", angle_rad.to_degrees().abs()));
+                }
                 Edit::Axes => parts.push(match other_axes(&self.settings) {
                     VelocityAxes::Body => "velocities are in body axes".to_owned(),
                     VelocityAxes::World => "velocities are in world axes".to_owned(),

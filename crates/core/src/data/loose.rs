@@ -2,6 +2,7 @@
 //! that writes delimited text. The columns are found by their headers or by a mapping of the user
 //! and converted to SI units.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::data::si_values::{instants_s, si_values};
@@ -9,7 +10,7 @@ use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnUse, Columns, DataError, Dialect, ModelStart, Note,
     ReadSettings, Sampling, SeriesError, Table, Thousands, TimeSeries, VelocityAxes, antenna,
-    clock, computed, corrections, degrees, impulse, path_speed,
+    clock, computed, corrections, course, degrees, impulse, path_speed, steering,
 };
 use crate::ranges::TIME_STEP;
 
@@ -297,7 +298,8 @@ fn load_columns(
         let values = si_values(table, column, series.time_s(), &settings);
         let values = values.map_err(|error| {
             let shift_s = clock::controls_shift_s(&series, kind, map);
-            degrees::asked(table, column, map, shift_s, error)
+            let error = degrees::asked(table, column, map, shift_s, error);
+            steering::asked(table, column, map, shift_s, error)
         })?;
         insert(&mut series, column.channel, values, table)?;
     }
@@ -327,7 +329,7 @@ fn load_columns(
     notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
     notes.extend(computed::note(table, &by_channel));
     notes.extend(found);
-    notes.extend(path_speed::note(table, &by_channel, &series));
+    notes.extend(doubts(table, &by_channel, &series, map));
     // What is checked above is what the receiver has measured.
     notes.extend(move_to_cg(&mut series, &settings, table)?);
     let model_start = table.model_start().filter(|_| kind == FileKind::Force && is_as_written(map));
@@ -342,6 +344,21 @@ fn load_columns(
         encoding: table.encoding(),
         model_start,
     })
+}
+
+/// What numbers say of columns beside what contradicts itself.
+fn doubts(
+    table: &Table,
+    by_channel: &BTreeMap<Channel, ColumnUse>,
+    series: &TimeSeries,
+    map: Option<&ColumnMap>,
+) -> Vec<Note> {
+    let all = [
+        course::offset_note(series),
+        path_speed::note(table, by_channel, series),
+        steering::note(by_channel, map, series),
+    ];
+    all.into_iter().flatten().collect()
 }
 
 /// Whether a map takes the force of a finite-element run as it was written: neither that on the other car nor

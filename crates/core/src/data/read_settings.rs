@@ -5,7 +5,7 @@
 use std::fmt;
 
 use crate::data::{DeckUnits, MapError, Separator, Thousands, antenna, spelling};
-use crate::ranges::INSTANT;
+use crate::ranges::{HEADING, INSTANT};
 use crate::units::Quantity;
 
 /// The sheet of a workbook from which a table is read.
@@ -60,6 +60,8 @@ pub struct ReadSettings {
     /// Whether yaw angles are compass headings, clockwise from north, over a path with x to the east and y to
     /// the north: `headings=compass`. The numbers are turned into yaw angles.
     pub compass_headings: bool,
+    /// What is added to every yaw angle, rad, where they are counted from another axis than X: `yaw_offset=-90:deg`.
+    pub yaw_offset_rad: Option<f64>,
     /// Place of the antenna whose positions the file has, ahead and to the left of the CG, m:
     /// `antenna=0.4,-0.3`. The positions are moved to the CG by the yaw angle.
     pub antenna_m: Option<[f64; 2]>,
@@ -118,6 +120,12 @@ impl ReadSettings {
                     _ => return Err(wrong("compass or yaw")),
                 };
                 !std::mem::replace(&mut self.compass_headings, is_compass)
+            }
+            "yaw_offset" => {
+                let offset_rad = yaw_offset_rad(value);
+                let offset_rad =
+                    offset_rad.ok_or_else(|| wrong("an angle, e.g. yaw_offset=-90:deg"))?;
+                self.yaw_offset_rad.replace(offset_rad).is_none()
             }
             "antenna" => {
                 let expected = "x and y from the CG in metres, e.g. antenna=0.4,-0.3";
@@ -188,6 +196,14 @@ fn shift_s(value: &str) -> Option<f64> {
     INSTANT.contains(shift_s).then_some(shift_s)
 }
 
+/// The angle in `-90:deg`, rad.
+fn yaw_offset_rad(value: &str) -> Option<f64> {
+    let (number, unit) = value.rsplit_once(':')?;
+    let unit = spelling::unit(Quantity::Angle, unit.trim())?;
+    let offset_rad = unit.to_si(number.trim().parse().ok()?);
+    HEADING.contains(offset_rad).then_some(offset_rad)
+}
+
 impl fmt::Display for SheetRef {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -222,6 +238,7 @@ impl fmt::Display for ReadSettings {
             ("shift", self.time_shift_s.map(|shift_s| format!("{shift_s}:s"))),
             ("y_axis", self.y_to_right.then(|| "right".to_owned())),
             ("headings", self.compass_headings.then(|| "compass".to_owned())),
+            ("yaw_offset", self.yaw_offset_rad.map(|of| format!("{}:deg", of.to_degrees()))),
             ("antenna", self.antenna_m.map(|[x_m, y_m]| format!("{x_m} {y_m}"))),
             ("velocities", velocities),
         ];

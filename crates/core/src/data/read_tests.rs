@@ -79,3 +79,36 @@ fn a_blank_cell_of_a_recorder_names_the_option_that_reads_it() {
     let log = error("time [s],x [m],y [m]\n0,0,0\n1,,0\n", "");
     assert!(log.contains("f.csv:3:2: ") && !log.contains(hint), "{log}");
 }
+
+/// Test logs mean the steering wheel by `Lenkwinkel` more often than not.
+#[test]
+fn a_steer_angle_that_may_be_that_of_the_steering_wheel_is_said_or_asked_for() {
+    let rows = |largest: f64| format!("0,0\n0.5,{largest}\n1,{}\n", -largest);
+    let wheel = "steering_wheel=2:deg";
+    for header in ["Zeit [s],Lenkwinkel [deg]", "time [s],Steer_Angle [deg]", "t,steer_angle_deg"] {
+        let small = read(&format!("{header}\n{}", rows(12.0)), "").unwrap();
+        assert!((values(&small, Channel::Steer)[1] - 12_f64.to_radians()).abs() < 1e-12);
+        let is_said = |note: &Note| note.is_doubt() && note.to_string().contains(wheel);
+        assert!(small.notes.iter().any(is_said), "{header}: {:?}", small.notes);
+        let said = error(&format!("{header}\n{}", rows(180.0)), "");
+        assert!(said.contains("further than road wheels do") && said.contains(wheel), "{said}");
+        let turned = read(&format!("{header}\n{}", rows(180.0)), wheel).unwrap();
+        let angle = values(&turned, Channel::SteeringWheel);
+        assert!((angle[1] - std::f64::consts::PI).abs() < 1e-12, "{angle:?}");
+        assert!(!is_said_any(&turned), "{:?}", turned.notes);
+    }
+    // A unit that nobody states is asked for with it.
+    let said = error(&format!("Zeit [s],Lenkwinkel\n{}", rows(180.0)), "");
+    assert!(said.contains(wheel), "{said}");
+    // Who says that it is the road wheels' has said it, and other names leave nothing open.
+    let text = format!("Zeit [s],Lenkwinkel [deg]\n{}", rows(12.0));
+    assert!(!is_said_any(&read(&text, "steer=2").unwrap()));
+    let text = format!("time [s],steer [deg]\n{}", rows(12.0));
+    assert!(!is_said_any(&read(&text, "").unwrap()));
+    let both = "Zeit [s],Lenkwinkel [deg],Lenkradwinkel [deg]\n0,0,0\n0.5,5,80\n1,6,96\n";
+    assert!(!is_said_any(&read(both, "").unwrap()));
+}
+
+fn is_said_any(loaded: &Loaded) -> bool {
+    is_said(loaded, "angle of the road wheels")
+}

@@ -55,6 +55,8 @@ pub(super) fn si_values(
     let shift_s = settings.time_shift_s.filter(|_| column.channel == Channel::Time);
     let is_mirrored = settings.y_to_right && changes_sign_with_y(column.channel);
     let compass = compass_quantity(column.channel).filter(|_| settings.compass_headings);
+    let is_heading = compass_quantity(column.channel) == Some(Quantity::Angle);
+    let offset_rad = settings.yaw_offset_rad.filter(|_| is_heading).unwrap_or(0.0);
     let range = samples_range(column.channel);
     for (row_idx, value) in values.iter_mut().enumerate() {
         *value += shift_s.unwrap_or(0.0);
@@ -66,6 +68,7 @@ pub(super) fn si_values(
             Some(_) => *value = 0.0 - *value,
             None => {}
         }
+        *value += offset_rad;
         if let Some(range) = range.filter(|range| !range.contains(*value)) {
             return Err(DataError::ImplausibleValue {
                 path: table.path().to_owned(),

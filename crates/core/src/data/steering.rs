@@ -1,0 +1,83 @@
+//! Steer angles whose header does not say whether they are those of the road wheels or of the steering wheel, which turns
+//! 12 to 20 times as far.
+
+use std::collections::BTreeMap;
+
+use crate::data::columns::open_question;
+use crate::data::error::quoted;
+use crate::data::spelling::letters_and_digits;
+use crate::data::{
+    Channel, ColumnMap, ColumnSource, ColumnUse, DataError, Note, Table, TimeSeries,
+};
+use crate::ranges::STEERING_WHEEL_ANGLE;
+use crate::units::{Quantity, Unit};
+
+/// Beginnings of headers, in letters and digits, by which programs name either of the two.
+const OPEN: [&str; 2] = ["steerangle", "lenkwinkel"];
+
+/// Asks whether an angle that no road wheel reaches is that of the steering wheel; any other error stays as it is.
+///
+/// - `shift_s`: what would let the record begin at 0, if that has to be said as well, s.
+/// - `error`: why the column is refused.
+pub(super) fn asked(
+    table: &Table,
+    column: &ColumnUse,
+    map: Option<&ColumnMap>,
+    shift_s: Option<f64>,
+    error: DataError,
+) -> DataError {
+    let is_said = map.is_some_and(|map| map.get(Channel::Steer).is_some());
+    let (DataError::ImplausibleValue { .. }, Channel::Steer, [_], false) =
+        (&error, column.channel, &column.terms[..], is_said)
+    else {
+        return error;
+    };
+    let idx = column.number.saturating_sub(1);
+    let fits = |unit: &Unit| {
+        let is_angle = |row_idx| {
+            let angle = table.number(row_idx, idx).map(|number| unit.to_si(number));
+            angle.is_some_and(|angle_rad| STEERING_WHEEL_ANGLE.contains(angle_rad))
+        };
+        (0..table.n_rows()).all(is_angle)
+    };
+    let in_degrees = Quantity::Angle.units().iter().find(|unit| unit.symbol == "deg").copied();
+    let unit = if column.unit_is_stated { Some(column.unit) } else { in_degrees };
+    let Some(unit) = unit.filter(fits) else { return error };
+    let what = format!(
+        "column {} {} turns further than road wheels do; an angle of the steering wheel is read as such, with the \
+         steering ratio (--steering-ratio)",
+        column.number,
+        quoted(&column.name)
+    );
+    let mut map = map.cloned().unwrap_or_default();
+    map.settings.time_shift_s = shift_s.or(map.settings.time_shift_s);
+    let answer = ColumnSource { unit: Some(unit), ..column.source() };
+    open_question(table, Some(&map), what, [(Channel::SteeringWheel, answer)])
+}
+
+/// Says of an angle whose header is open, and which road wheels may have, that it was taken as theirs.
+pub(super) fn note(
+    columns: &BTreeMap<Channel, ColumnUse>,
+    map: Option<&ColumnMap>,
+    series: &TimeSeries,
+) -> Option<Note> {
+    let column = columns.get(&Channel::Steer)?;
+    let key = letters_and_digits(&column.name);
+    let is_open = OPEN.iter().any(|name| key.starts_with(name));
+    let is_said = map.is_some_and(|map| map.get(Channel::Steer).is_some());
+    if !is_open || is_said || columns.contains_key(&Channel::SteeringWheel) {
+        return None;
+    }
+    let largest_rad =
+        series.get(Channel::Steer)?.iter().fold(0.0, |of: f64, angle| of.max(angle.abs()));
+    Some(Note::Doubt {
+        text: format!(
+            "column {} {} is taken as the angle of the road wheels, which turn by up to {:.1} deg; if it is that of the \
+             steering wheel: map steering_wheel={}, with the steering ratio",
+            column.number,
+            quoted(&column.name),
+            largest_rad.to_degrees(),
+            column.source()
+        ),
+    })
+}
