@@ -20,6 +20,8 @@ mod parquet_file;
 mod positions;
 mod recorder;
 mod recorder_table;
+#[cfg(test)]
+mod sample_tests;
 mod tdms;
 mod tdms_file;
 mod tdms_objects;
