@@ -357,6 +357,7 @@ fn doubts(
         course::offset_note(series),
         path_speed::note(table, by_channel, series),
         steering::note(by_channel, map, series),
+        steering::opposed(by_channel, series),
     ];
     all.into_iter().flatten().collect()
 }

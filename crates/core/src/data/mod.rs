@@ -49,6 +49,7 @@ mod open;
 mod path_speed;
 mod proposals;
 mod quality;
+mod quality_jumps;
 mod quality_motion;
 mod quality_phrase;
 mod read_settings;

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
-    contact_interval, cut_at_s, quality_motion,
+    contact_interval, cut_at_s, quality_jumps, quality_motion,
 };
 use crate::numerics::quantile_of_sorted;
 
@@ -94,6 +94,14 @@ pub enum FlagKind {
     FastPath,
     /// Turn of a vehicle from one row to the next, rad, which may as well be one to the other side.
     YawStep,
+    /// Step of a recorded speed from one row to the next, m/s, which no vehicle makes.
+    SpeedJump,
+    /// Step of a yaw angle, rad, likewise.
+    YawJump,
+    /// Step of a yaw rate, rad/s, likewise.
+    YawRateJump,
+    /// Step of an angle of the road wheels or of the steering wheel, rad, likewise.
+    SteerJump,
     /// A corner of the striking vehicle stays hooked to the struck vehicle, as the table of cases
     /// states.
     Hooked,
@@ -119,6 +127,10 @@ impl FlagKind {
             Self::SlowPath => "slow",
             Self::FastPath => "fast",
             Self::YawStep => "turn?",
+            Self::SpeedJump => "speed?",
+            Self::YawJump => "yaw?",
+            Self::YawRateJump => "yaw rate?",
+            Self::SteerJump => "steer?",
             Self::Hooked => "hooked",
         }
     }
@@ -204,13 +216,14 @@ pub fn check_series(series: &TimeSeries, sampling: Sampling) -> Vec<Flag> {
 /// Checks a single file, whose force may be in another unit than it was read in.
 ///
 /// - returns the findings of [`check_series`], and whether peak and impulse are those of a collision
-///   of cars, whether the file begins before the force does, whether a vehicle can go along its path, and
-///   whether its rows tell to which side it turns.
+///   of cars, whether the file begins before the force does, whether a vehicle can go along its path,
+///   whether its rows tell to which side it turns, and whether a column has numbers that stand for none.
 pub fn check_file(loaded: &Loaded) -> Vec<Flag> {
     let sampling = loaded.force_sampling();
     let mut flags = check_series(&loaded.series, sampling);
     flags.extend(quality_motion::check_path(&loaded.series));
     flags.extend(quality_motion::check_yaw(&loaded.series));
+    flags.extend(quality_jumps::check_jumps(&loaded.series));
     let force = ForceHistory::from_series(&loaded.series, sampling).ok();
     let peak = force.as_ref().and_then(ForceHistory::peak).filter(|(peak_n, _)| *peak_n > 0.0);
     let (Some(force), Some((peak_n, peak_at))) = (force, peak) else {

@@ -64,6 +64,10 @@ impl Flag {
             FlagKind::PathJump | FlagKind::SlowPath | FlagKind::FastPath | FlagKind::YawStep => {
                 self.finding_of_path()
             }
+            FlagKind::SpeedJump
+            | FlagKind::YawJump
+            | FlagKind::YawRateJump
+            | FlagKind::SteerJump => self.finding_of_jump(),
         }
     }
 
@@ -95,6 +99,33 @@ impl Flag {
             )
             .with(PhraseValue::significant(Quantity::Speed, self.value)),
         }
+    }
+
+    fn finding_of_jump(&self) -> Phrase {
+        let angle = PhraseValue::fixed(Quantity::Angle, self.value, 0);
+        let ([en, de], value) = match self.kind {
+            FlagKind::SpeedJump => (
+                ["the speed", "Die Geschwindigkeit"],
+                PhraseValue::significant(Quantity::Speed, self.value),
+            ),
+            FlagKind::YawRateJump => (
+                ["the yaw rate", "Die Gierrate"],
+                PhraseValue::fixed(Quantity::AngularVelocity, self.value, 0),
+            ),
+            FlagKind::YawJump => (["the yaw angle", "Der Gierwinkel"], angle),
+            _ => (["the steer angle", "Der Lenkwinkel"], angle),
+        };
+        Phrase::new(
+            format!(
+                "{en} jumps by {{0}} from one row to the next, which neither a vehicle nor its driver does; remove rows \
+                 without a value"
+            ),
+            format!(
+                "{de} springt von einer Zeile zur nächsten um {{0}}, was weder Fahrzeug noch Fahrer tun; Zeilen ohne \
+                 Wert entfernen"
+            ),
+        )
+        .with(value)
     }
 
     fn finding_of_force(&self) -> Phrase {

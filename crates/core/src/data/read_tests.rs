@@ -1,6 +1,6 @@
 //! Single files as programs and people write them, and what is read of them or said.
 
-use crate::data::{Channel, ColumnMap, DataError, Loaded, Note, read_any_series};
+use crate::data::{Channel, ColumnMap, DataError, Loaded, Note, check_file, read_any_series};
 
 /// Reads a text as a file.
 ///
@@ -111,4 +111,34 @@ fn a_steer_angle_that_may_be_that_of_the_steering_wheel_is_said_or_asked_for() {
 
 fn is_said_any(loaded: &Loaded) -> bool {
     is_said(loaded, "angle of the road wheels")
+}
+
+#[test]
+fn front_wheels_that_turn_against_each_other_are_said() {
+    let text = |sign: f64| {
+        let row = |i: u32| {
+            let angle = 5.0 * (0.1 * f64::from(i)).sin();
+            format!("{},{angle},{}\n", 0.1 * f64::from(i), 0.9 * sign * angle)
+        };
+        let rows: String = (0..40).map(row).collect();
+        format!("time [s],steer_fl [deg],steer_fr [deg]\n{rows}")
+    };
+    let words = "map steer_fr=-3:deg";
+    assert!(is_said(&read(&text(-1.0), "").unwrap(), words));
+    assert!(!is_said(&read(&text(1.0), "").unwrap(), words));
+    assert!(!is_said(&read(&text(-1.0), "steer_fr=-3:deg").unwrap(), words));
+}
+
+/// What a receiver or a sensor writes where it has no value.
+#[test]
+fn numbers_that_stand_for_none_are_flagged_in_a_file() {
+    let row = |i: u32| {
+        let (t, none) = (0.02 * f64::from(i), (50..53).contains(&i));
+        let angle = if none { -999.0 } else { 60.0 * t.sin() };
+        format!("{t},{angle}\n")
+    };
+    let rows: String = (0..200).map(row).collect();
+    let loaded = read(&format!("time [s],steering wheel [deg]\n{rows}"), "").unwrap();
+    let flags: Vec<String> = check_file(&loaded).iter().map(ToString::to_string).collect();
+    assert!(flags.iter().any(|flag| flag.contains("the steer angle jumps by")), "{flags:?}");
 }

@@ -15,6 +15,9 @@ use crate::units::{Quantity, Unit};
 /// Beginnings of headers, in letters and digits, by which programs name either of the two.
 const OPEN: [&str; 2] = ["steerangle", "lenkwinkel"];
 
+/// Angle of a front wheel from which it steers and is not set so, rad.
+const STEERED_RAD: f64 = 0.02;
+
 /// Asks whether an angle that no road wheel reaches is that of the steering wheel; any other error stays as it is.
 ///
 /// - `shift_s`: what would let the record begin at 0, if that has to be said as well, s.
@@ -78,6 +81,24 @@ pub(super) fn note(
             quoted(&column.name),
             largest_rad.to_degrees(),
             column.source()
+        ),
+    })
+}
+
+/// Says that the front wheels turn against each other, so that their mean, which steers a car, is next to nothing: one of
+/// them counts to the other side.
+pub(super) fn opposed(columns: &BTreeMap<Channel, ColumnUse>, series: &TimeSeries) -> Option<Note> {
+    let (left, right) = series.get(Channel::SteerFl).zip(series.get(Channel::SteerFr))?;
+    let largest_rad =
+        |angles: &[f64]| angles.iter().fold(0.0, |of: f64, angle| of.max(angle.abs()));
+    let is_steered = largest_rad(left).min(largest_rad(right)) > STEERED_RAD;
+    let together: f64 = left.iter().zip(right).map(|(left, right)| left * right).sum();
+    let column = columns.get(&Channel::SteerFr)?;
+    (is_steered && together < 0.0).then(|| Note::Doubt {
+        text: format!(
+            "the front wheels turn against each other, so that their mean hardly steers: if one of them counts to the \
+             other side, map steer_fr=-{}:{}",
+            column.number, column.unit.symbol
         ),
     })
 }
