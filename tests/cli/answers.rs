@@ -184,7 +184,7 @@ fn a_recording_without_rates_says_with_which_it_is_simulated() {
     let report = answer(&["simulate", "--trajectory", text(&bare)]);
     let printed = report["assumptions"].to_string();
     assert!(
-        printed.contains("start_of_record") && printed.contains("yaw_rate_rad_s = 0"),
+        printed.contains("start_of_record") && printed.contains("Yaw rate r = 0"),
         "{printed}"
     );
 }

@@ -116,8 +116,11 @@ pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
 pub(crate) fn drawn_drivers(vehicles: [&StruckVehicle; 2]) -> Vec<Caveat> {
     let of_vehicle = |(vehicle, role): (&StruckVehicle, &str)| {
         let drawn = vehicle.controls.closed_loop.iter().flat_map(ClosedLoop::distributions);
-        let note = |text: String| {
-            Caveat::new(CaveatKind::Note, format!("drawn of the {role} vehicle, {text}"))
+        let note = |drawn: Phrase| {
+            let text = Phrase::new("drawn of the {0}, {1}", "Gezogen ({0}): {1}")
+                .with(PhraseValue::Term(format!("{role} vehicle")))
+                .with(PhraseValue::phrase(drawn));
+            Caveat::new(CaveatKind::Note, text)
         };
         drawn.map(note).collect::<Vec<_>>()
     };
@@ -289,8 +292,18 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
     unused
 }
 
-/// Why nobody chooses the vehicles of a recorded pair.
-pub(crate) const VEHICLES_OF_PAIR: &str = "each recorded pair says itself which vehicles it has";
+/// A vehicle that was chosen for recorded pairs, which have their own.
+///
+/// - `role`: which one it is, as a label.
+pub(crate) fn vehicle_of_pair(role: &str) -> Caveat {
+    Caveat::not_used(
+        Phrase::of(PhraseValue::Term(role.to_owned())),
+        Phrase::new(
+            "each recorded pair says itself which vehicles it has",
+            "jedes aufgezeichnete Paar nennt seine Fahrzeuge selbst",
+        ),
+    )
+}
 
 /// What the simulation of a recorded motion does not use of its question.
 fn by_record(request: &SimulateRequest) -> Vec<Caveat> {
@@ -306,12 +319,15 @@ fn by_record(request: &SimulateRequest) -> Vec<Caveat> {
         ));
     }
     if matches!(request.source, MotionSource::Case { .. }) {
-        let by_case = "the case says itself what happens to the wheels and how long it lasts";
-        if request.ending.is_some() {
-            unused.push(Caveat::not_used("what happens to the wheels", by_case));
-        }
-        if request.until_rest {
-            unused.push(Caveat::not_used("simulation until rest", by_case));
+        let by_case = Phrase::new(
+            "the case says itself what happens to the wheels and how long it lasts",
+            "der Fall sagt selbst, was mit den Rädern geschieht und wie lange er dauert",
+        );
+        let wheels = Phrase::new("what happens to the wheels", "was mit den Rädern geschieht");
+        let to_rest = Phrase::new("simulation until rest", "Simulation bis zum Stillstand");
+        for (is_asked, what) in [(request.ending.is_some(), wheels), (request.until_rest, to_rest)]
+        {
+            unused.extend(is_asked.then(|| Caveat::not_used(what, by_case.clone())));
         }
     }
     unused
@@ -321,9 +337,15 @@ fn by_record(request: &SimulateRequest) -> Vec<Caveat> {
 pub(crate) fn by_recorded_pair(request: &SimulateRequest) -> Vec<Caveat> {
     let cars = [("struck vehicle", &request.vehicle), ("striking vehicle", &request.striking)];
     let cars = cars.into_iter().filter(|(_, choice)| **choice != VehicleChoice::Automatic);
-    let cars = cars.map(|(name, _)| Caveat::not_used(name, VEHICLES_OF_PAIR));
+    let cars = cars.map(|(name, _)| vehicle_of_pair(name));
     let one_contact = request.one_contact.then(|| {
-        Caveat::not_used("one contact only", "the whole contact is that of the contact law")
+        Caveat::not_used(
+            Phrase::new("one contact only", "nur der erste Kontakt"),
+            Phrase::new(
+                "the whole contact is that of the contact law",
+                "der ganze Kontakt folgt dem Kontaktgesetz",
+            ),
+        )
     });
     let of_pair = integrator_of_pair(request.integrator);
     by_record(request).into_iter().chain(cars).chain(one_contact).chain(of_pair).collect()
@@ -359,17 +381,36 @@ pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::vehicle::{ContactPoint, Controls, FrictionZone, VehicleState};
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+    use impactlab_core::vehicle::{ContactPoint, Controls, FrictionZone, PitDriver, VehicleState};
 
-    #[test]
-    fn a_forecast_says_that_it_does_not_know_the_zones() {
-        let mut struck = StruckVehicle {
+    fn struck() -> StruckVehicle {
+        StruckVehicle {
             vehicle: Preset::Reference.parameters(),
             initial: VehicleState::driving_straight(20.0),
             contact: ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.5 },
             controls: Controls::default(),
             friction_zones: Vec::new(),
-        };
+        }
+    }
+
+    /// “drawn of the striking vehicle, driver of the PIT: …” stood in German reports.
+    #[test]
+    fn what_is_drawn_of_a_driver_is_told_in_german() {
+        let pit = Some(PitDriver::default());
+        let mut striking = struck();
+        striking.controls.closed_loop = Some(ClosedLoop { pit, ..ClosedLoop::default() });
+        let notes = drawn_drivers([&struck(), &striking]);
+        let [note] = &notes[..] else { panic!("{notes:?}") };
+        assert!(note.text.starts_with("drawn of the striking vehicle, driver of the PIT: 90°"));
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let text = note.text_in(&german, &|_| "stoßendes Fahrzeug".to_owned()).unwrap();
+        assert!(text.starts_with("Gezogen (stoßendes Fahrzeug): Fahrer, der das PIT"), "{text}");
+    }
+
+    #[test]
+    fn a_forecast_says_that_it_does_not_know_the_zones() {
+        let mut struck = struck();
         assert_eq!(zones_by_network(&struck), None);
         let border_m = vec![[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
         let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };

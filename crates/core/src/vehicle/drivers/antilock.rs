@@ -14,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::{ESC_SPEED, PEAK_SHARE, Range};
+use crate::units::Phrase;
 use crate::vehicle::drivers::numbers::{Number, drawn_words, named, uniform};
 
 /// An anti-lock system: what is stated of it.
@@ -47,8 +48,10 @@ impl AntiLock {
     }
 
     /// What [`AntiLock::drawn`] draws, in words.
-    pub(super) fn distributions(&self) -> Vec<&'static str> {
-        drawn_words([(self.share_of_peak.is_some(), "0.9 to 0.98 of the peak friction")])
+    pub(super) fn distributions(&self) -> Vec<Phrase> {
+        let share =
+            ["0.9 to 0.98 of the peak friction", "das 0,9- bis 0,98-Fache der größten Reibung"];
+        drawn_words([(self.share_of_peak.is_some(), share)])
     }
 
     /// The system with usual values where nothing is stated.

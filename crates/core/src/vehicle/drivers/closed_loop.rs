@@ -2,6 +2,7 @@
 //!
 //! [`Controls`]: crate::vehicle::Controls
 
+use crate::units::{Phrase, PhraseValue};
 use crate::vehicle::drivers::{AntiLock, Countersteer, FollowedSpeed, PitDriver, StabilityControl};
 use crate::vehicle::{Braking, Ending};
 
@@ -80,16 +81,32 @@ impl ClosedLoop {
     }
 
     /// What [`ClosedLoop::drawn`] draws, for a person; empty where nothing acts or everything is stated.
-    pub fn distributions(&self) -> Vec<String> {
+    pub fn distributions(&self) -> Vec<Phrase> {
         let all = [
-            ("stability control", self.esc.as_ref().map(StabilityControl::distributions)),
-            ("anti-lock system", self.abs.as_ref().map(AntiLock::distributions)),
-            ("countersteering", self.countersteer.as_ref().map(Countersteer::distributions)),
-            ("driver of the PIT", self.pit.as_ref().map(PitDriver::distributions)),
+            (
+                Phrase::new("stability control", "Stabilitätsregelung"),
+                self.esc.as_ref().map(StabilityControl::distributions),
+            ),
+            (
+                Phrase::new("anti-lock system", "Antiblockiersystem"),
+                self.abs.as_ref().map(AntiLock::distributions),
+            ),
+            (
+                Phrase::new("countersteering", "Gegenlenken"),
+                self.countersteer.as_ref().map(Countersteer::distributions),
+            ),
+            (
+                Phrase::new("driver of the PIT", "Fahrer, der das PIT ausführt"),
+                self.pit.as_ref().map(PitDriver::distributions),
+            ),
         ];
         all.into_iter()
             .filter_map(|(name, drawn)| Some((name, drawn.filter(|drawn| !drawn.is_empty())?)))
-            .map(|(name, drawn)| format!("{name}: {}", drawn.join(", ")))
+            .map(|(name, drawn)| {
+                Phrase::new("{0}: {1}", "{0}: {1}")
+                    .with(PhraseValue::phrase(name))
+                    .with(PhraseValue::phrase(Phrase::joined(drawn, ", ")))
+            })
             .collect()
     }
 

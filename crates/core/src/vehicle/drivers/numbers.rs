@@ -3,6 +3,7 @@
 use crate::data::key_with_unit;
 use crate::numerics::normal_cdf;
 use crate::ranges::Range;
+use crate::units::Phrase;
 
 /// A number: its name without the unit, its place, `None` where nobody states it, and its range.
 pub(in crate::vehicle) type Number<'a> = (&'static str, &'a mut Option<f64>, Range);
@@ -18,9 +19,10 @@ pub(super) fn named<const N: usize>(numbers: [Number<'_>; N]) -> Vec<(String, f6
 
 /// The distributions in words of those numbers that are not stated.
 ///
-/// - `numbers`: whether each is stated, and how it is drawn if not.
-pub(super) fn drawn_words<const N: usize>(numbers: [(bool, &'static str); N]) -> Vec<&'static str> {
-    numbers.into_iter().filter(|(is_stated, _)| !is_stated).map(|(_, words)| words).collect()
+/// - `numbers`: whether each is stated, and how it is drawn if not, in English and in German.
+pub(super) fn drawn_words<const N: usize>(numbers: [(bool, [&'static str; 2]); N]) -> Vec<Phrase> {
+    let open = numbers.into_iter().filter(|(is_stated, _)| !is_stated);
+    open.map(|(_, [en, de])| Phrase::new(en, de)).collect()
 }
 
 /// A number that is uniform between two limits, from a standard normal variable.

@@ -27,7 +27,7 @@ use crate::ranges::{
     BRAKE_RISE, DEAD_TIME, ESC_ACCELERATION_SHARE, ESC_FILTER, ESC_FULL_ERROR, ESC_OFF_SHARE,
     ESC_SPEED, ESC_THRESHOLD, REAR_BRAKE_SHARE, Range, SIDESLIP, SLIP_RATIO,
 };
-use crate::units::{KILOMETRE_PER_HOUR_M_S, STANDARD_GRAVITY_M_S2};
+use crate::units::{KILOMETRE_PER_HOUR_M_S, Phrase, STANDARD_GRAVITY_M_S2};
 use crate::vehicle::drivers::numbers::{Number, drawn_words, named, uniform};
 use crate::vehicle::{OUTPUT_INTERVAL_S, VehicleParameters, VehicleState, Wheel};
 
@@ -124,17 +124,29 @@ impl StabilityControl {
     }
 
     /// What [`StabilityControl::drawn`] draws, in words.
-    pub(super) fn distributions(&self) -> Vec<&'static str> {
+    pub(super) fn distributions(&self) -> Vec<Phrase> {
         drawn_words([
-            (self.threshold_rad_s.is_some(), "threshold 4 to 8 deg/s"),
-            (self.full_error_rad_s.is_some(), "full braking from 0.15 to 0.35 rad/s of error"),
-            (self.slip_ratio.is_some(), "slip 0.1 to 0.15"),
-            (self.rear_share.is_some(), "rear share 0.25 to 0.75"),
-            (self.dead_time_s.is_some(), "dead time 0.1 to 0.2 s"),
-            (self.rise_s.is_some(), "rise 0.15 to 0.25 s"),
+            (self.threshold_rad_s.is_some(), ["threshold 4 to 8 deg/s", "Schwelle 4 bis 8 °/s"]),
+            (
+                self.full_error_rad_s.is_some(),
+                [
+                    "full braking from 0.15 to 0.35 rad/s of error",
+                    "volle Bremsung ab 0,15 bis 0,35 rad/s Abweichung",
+                ],
+            ),
+            (self.slip_ratio.is_some(), ["slip 0.1 to 0.15", "Schlupf 0,1 bis 0,15"]),
+            (
+                self.rear_share.is_some(),
+                ["rear share 0.25 to 0.75", "hinterer Anteil 0,25 bis 0,75"],
+            ),
+            (self.dead_time_s.is_some(), ["dead time 0.1 to 0.2 s", "Totzeit 0,1 bis 0,2 s"]),
+            (self.rise_s.is_some(), ["rise 0.15 to 0.25 s", "Anstieg 0,15 bis 0,25 s"]),
             (
                 self.gives_up_sideslip_rad.is_some(),
-                "gives up at 30° to 60° of side slip or, in a third, never",
+                [
+                    "gives up at 30° to 60° of side slip or, in a third, never",
+                    "gibt bei 30° bis 60° Schwimmwinkel auf, in einem Drittel nie",
+                ],
             ),
         ])
     }

@@ -20,6 +20,7 @@ use crate::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, PIT_START, Range, STEER_ANGLE, STEERING_RATIO,
     STEERING_WHEEL_ANGLE, STRUCK_TURN, THROTTLE_LIMIT,
 };
+use crate::units::Phrase;
 use crate::vehicle::drivers::numbers::{Number, drawn_words, named, uniform};
 use crate::vehicle::drivers::struck_driver::turned_towards;
 use crate::vehicle::{
@@ -200,13 +201,28 @@ impl PitDriver {
     }
 
     /// What [`PitDriver::drawn`] draws, in words.
-    pub(super) fn distributions(&self) -> Vec<&'static str> {
+    pub(super) fn distributions(&self) -> Vec<Phrase> {
         drawn_words([
-            (self.steering_wheel_rad.is_some(), "90° to 180° of the steering wheel"),
-            (self.turn_s.is_some(), "turned within 0.2 to 0.5 s"),
-            (self.largest_acceleration_m_s2.is_some(), "up to 2 to 4 m/s²"),
-            (self.struck_turn_rad.is_some(), "until the struck car has turned by 30° to 90°"),
-            (self.end.is_some(), "each end equally likely"),
+            (
+                self.steering_wheel_rad.is_some(),
+                ["90° to 180° of the steering wheel", "90° bis 180° am Lenkrad"],
+            ),
+            (
+                self.turn_s.is_some(),
+                ["turned within 0.2 to 0.5 s", "eingelenkt innerhalb von 0,2 bis 0,5 s"],
+            ),
+            (
+                self.largest_acceleration_m_s2.is_some(),
+                ["up to 2 to 4 m/s²", "Beschleunigung bis 2 bis 4 m/s²"],
+            ),
+            (
+                self.struck_turn_rad.is_some(),
+                [
+                    "until the struck car has turned by 30° to 90°",
+                    "bis sich das gestoßene Fahrzeug um 30° bis 90° gedreht hat",
+                ],
+            ),
+            (self.end.is_some(), ["each end equally likely", "jedes Ende gleich wahrscheinlich"]),
         ])
     }
 

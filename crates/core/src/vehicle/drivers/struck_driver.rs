@@ -19,6 +19,7 @@ use crate::ranges::{
     LARGEST_STEERING_WHEEL_ANGLE, REACTION_TIME, Range, SIDESLIP_GAIN, STEER_ANGLE, STEERING_RATIO,
     STEERING_WHEEL_RATE, YAW_RATE_GAIN,
 };
+use crate::units::Phrase;
 use crate::vehicle::drivers::numbers::{Number, drawn_words, lognormal, named, uniform};
 use crate::vehicle::{OUTPUT_INTERVAL_S, USUAL_STEERING_RATIO, VehicleState};
 
@@ -89,16 +90,31 @@ impl Countersteer {
     }
 
     /// What [`Countersteer::drawn`] draws, in words.
-    pub(super) fn distributions(&self) -> Vec<&'static str> {
+    pub(super) fn distributions(&self) -> Vec<Phrase> {
         drawn_words([
-            (self.delay_s.is_some(), "after 0.4 to 1.8 s (90 %, median 0.8)"),
+            (
+                self.delay_s.is_some(),
+                ["after 0.4 to 1.8 s (90 %, median 0.8)", "nach 0,4 bis 1,8 s (90 %, Median 0,8)"],
+            ),
             (
                 self.largest_steering_wheel_rad.is_some(),
-                "at most 180° to 540° of the steering wheel",
+                [
+                    "at most 180° to 540° of the steering wheel",
+                    "höchstens 180° bis 540° am Lenkrad",
+                ],
             ),
-            (self.steering_wheel_rate_rad_s.is_some(), "at 300 to 500 deg/s of it"),
-            (self.sideslip_gain.is_some(), "gain on side slip 0.6 to 1.4"),
-            (self.yaw_rate_gain_s.is_some(), "gain on the yaw rate 0 to 0.3 s"),
+            (
+                self.steering_wheel_rate_rad_s.is_some(),
+                ["at 300 to 500 deg/s of it", "mit 300 bis 500 °/s am Lenkrad"],
+            ),
+            (
+                self.sideslip_gain.is_some(),
+                ["gain on side slip 0.6 to 1.4", "Verstärkung auf den Schwimmwinkel 0,6 bis 1,4"],
+            ),
+            (
+                self.yaw_rate_gain_s.is_some(),
+                ["gain on the yaw rate 0 to 0.3 s", "Verstärkung auf die Gierrate 0 bis 0,3 s"],
+            ),
         ])
     }
 

@@ -3,6 +3,7 @@
 use super::striking_driver::PitState;
 use super::*;
 use crate::data::Channel;
+use crate::units::{Language, NumberFormat, Phrase, UnitSystem};
 use crate::vehicle::{
     Braking, Controls, Ending, HeldSteer, Integrator, Manoeuvre, Motion, PathLimit, Preset,
     SimulationRun, SteerHistory, VehicleParameters, VehicleState, WheelEffort, simulate_batch,
@@ -343,7 +344,8 @@ fn what_is_stated_of_a_driver_is_not_drawn() {
     let acting = (of_esc.acting(), StabilityControl::default().acting());
     assert!(acting.0.dead_time_s != acting.1.dead_time_s, "{of_esc:?}");
     assert!(of_pit.turn_s.is_some_and(|turn_s| turn_s != usual.turn_s), "{of_pit:?}");
-    let words = stated.distributions().join("; ");
+    let drawn = Phrase::joined(stated.distributions(), "; ");
+    let words = drawn.say(&NumberFormat::default());
     for (of_what, is_drawn) in [
         ("threshold", false),
         ("dead time 0.1 to 0.2 s", true),
@@ -353,6 +355,16 @@ fn what_is_stated_of_a_driver_is_not_drawn() {
         ("90° to 180° of the steering wheel", false),
         ("turned within 0.2 to 0.5 s", true),
         ("equally likely", false),
+    ] {
+        assert_eq!(words.contains(of_what), is_drawn, "{of_what}: {words}");
+    }
+    // It stood in English in German reports.
+    let words = drawn.say(&NumberFormat { units: UnitSystem::Si, language: Language::De });
+    for (of_what, is_drawn) in [
+        ("Schwelle", false),
+        ("Stabilitätsregelung: ", true),
+        ("Totzeit 0,1 bis 0,2 s", true),
+        ("innerhalb von 0,2 bis 0,5 s", true),
     ] {
         assert_eq!(words.contains(of_what), is_drawn, "{of_what}: {words}");
     }

@@ -637,6 +637,8 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("X, along the heading before the impact", "X, in Fahrtrichtung vor dem Aufprall"),
     ("Yaw ψ", "Gierwinkel ψ"),
     ("Yaw rate r", "Gierrate r"),
+    ("Roll φ", "Wankwinkel φ"),
+    ("Roll rate", "Wankrate"),
     ("± speed of the struck car, 90 %", "± Geschwindigkeit des gestoßenen Fahrzeugs, 90 %"),
     ("mean", "Mittel"),
     ("median", "Median"),

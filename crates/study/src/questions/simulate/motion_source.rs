@@ -190,13 +190,16 @@ fn assumed_contact(vehicle: &VehicleParameters) -> ContactPoint {
 pub(crate) fn start_of_record(loaded: &Loaded) -> Option<Caveat> {
     let is_missing = |channel: &Channel| loaded.series.get(*channel).is_none();
     let missing = [Channel::YawRate, Channel::Roll, Channel::RollRate].into_iter();
-    let zeros: Vec<String> =
-        missing.filter(is_missing).map(|channel| format!("{} = 0", channel.header())).collect();
+    let zero = |channel: Channel| {
+        Phrase::new("{0} = 0", "{0} = 0").with(PhraseValue::Term(channel.label().to_owned()))
+    };
+    let zeros: Vec<Phrase> = missing.filter(is_missing).map(zero).collect();
     let is_assumed = !zeros.is_empty();
     is_assumed.then(|| {
         let reason =
             Phrase::new("the file does not record them", "die Datei zeichnet sie nicht auf");
-        Caveat::assumed(CaveatSubject::StartOfRecord, zeros.join(", "), reason)
+        let zeros = Phrase::joined(zeros, ", ");
+        Caveat::assumed(CaveatSubject::StartOfRecord, zeros, reason)
     })
 }
 

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::caveats::restrictions;
-use crate::caveats::unused::{VEHICLES_OF_PAIR, contact_at_medians, integrator_of_pair};
+use crate::caveats::unused::{contact_at_medians, integrator_of_pair, vehicle_of_pair};
 use crate::questions::recorded_pair::{ReadyPair, no_such_pair, of_case};
 use crate::{
     Answer, Event, FlagReport, Observer, Provenance, ReplayedCaseReport, SimulateDatasetAnswer,
@@ -19,7 +19,7 @@ use impactlab_core::compare::{
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::Progress;
-use impactlab_core::uncertainty::{Caveat, Caveats};
+use impactlab_core::uncertainty::Caveats;
 use impactlab_core::vehicle::Motion;
 use impactlab_networks::pair::{Compared, PairDraw};
 
@@ -91,8 +91,7 @@ impl SimulateDatasetRequest {
         caveats.extend(restrictions::left_out_caveat(failures.len(), "cases"));
         caveats.extend(integrator_of_pair(self.integrator));
         caveats.extend(
-            (self.vehicle != VehicleChoice::Automatic)
-                .then(|| Caveat::not_used("struck vehicle", VEHICLES_OF_PAIR)),
+            (self.vehicle != VehicleChoice::Automatic).then(|| vehicle_of_pair("struck vehicle")),
         );
         caveats.extend([contact_at_medians(false)]);
         let summary = |choose: fn(&ReplayedCaseReport) -> bool| {
