@@ -177,18 +177,31 @@ const SAID_INSTEAD: &str = "said with the collision, instead of ";
 /// Words of what names nothing but an option or a key of a file, such as “another one: --vehicle”.
 const WORDS_OF_OPTION: usize = 3;
 
-/// A sentence without the options of the command line and the keys of files that it names.
+/// A sentence without the options of the command line and the keys of files that it names: in brackets, behind
+/// a colon, or as a clause of its own.
 fn without_options(text: &str) -> String {
+    let text = without_brackets(&without_brackets(text, " (--"), " ([");
     let named_before = |part: &str| {
         let (named, _) = part.split_once(": --").or_else(|| part.split_once(": ["))?;
         Some(named.to_owned())
     };
     let kept = text.split("; ").filter_map(|part| match named_before(part) {
-        None => Some(part.to_owned()),
+        None => (!names_option(part)).then(|| part.to_owned()),
         Some(named) => (named.split(' ').count() > WORDS_OF_OPTION).then_some(named),
     });
-    let mut text = kept.collect::<Vec<_>>().join("; ");
-    while let Some((before, behind)) = text.split_once(" (--") {
+    kept.collect::<Vec<_>>().join("; ")
+}
+
+/// Whether a clause is about an option of the command line or a key of a file. A unit in brackets stands behind
+/// what it is of, and a key before all else.
+fn names_option(clause: &str) -> bool {
+    clause.starts_with('[') || clause.starts_with("--") || clause.contains(" --")
+}
+
+/// A text without what stands in brackets that begin so.
+fn without_brackets(text: &str, begin: &str) -> String {
+    let mut text = text.to_owned();
+    while let Some((before, behind)) = text.split_once(begin) {
         let Some((_, behind)) = behind.split_once(')') else { break };
         text = format!("{before}{behind}");
     }
@@ -294,6 +307,14 @@ mod tests {
                 "by the struck side",
             ),
             ("X; Y: and no more", "X; Y: and no more"),
+            // Keys of the evidence stood where a reader expects words.
+            (
+                "nothing of its way is among the evidence ([rest], [[mark]]), so that it coasts",
+                "nothing of its way is among the evidence, so that it coasts",
+            ),
+            ("it coasts; [bullet_ending] of the scenario says it", "it coasts"),
+            ("left out here; leave out --one-contact", "left out here"),
+            ("track [m] is 1.5; mass [kg] is 2", "track [m] is 1.5; mass [kg] is 2"),
         ] {
             assert_eq!(without_options(text), told);
         }

@@ -301,8 +301,8 @@ pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
             Phrase::new(
                 "nothing of its way is among the evidence ([striking_rest], [[striking_mark]], \
                  [striking_edr]), so that it is not followed",
-                "zu seinem Weg fehlen Anknüpfungstatsachen ([striking_rest], [[striking_mark]], \
-                 [striking_edr]), so dass er nicht verfolgt wird",
+                "zu seinem Weg fehlen Anknüpfungstatsachen (Endlage, Reifenspuren oder \
+                 Unfalldatenspeicher), so dass es nicht verfolgt wird",
             ),
         )];
     }

@@ -102,8 +102,7 @@ impl LaterContactsReport {
                      among the evidence ([striking_rest], [[striking_mark]], [striking_edr])",
                     "Nach dem ersten Kontakt allein treffen sich die Fahrzeuge in {0} der Bewegungen \
                      wieder, wenn das stoßende Fahrzeug ungebremst ausrollt. Spätere Kontakte sind nicht verfolgt, da \
-                     Anknüpfungstatsachen zu seinem Weg fehlen ([striking_rest], [[striking_mark]], \
-                     [striking_edr])",
+                     Anknüpfungstatsachen zu seinem Weg fehlen (Endlage, Reifenspuren oder Unfalldatenspeicher)",
                 )
                 .with(share);
                 Caveat::new(CaveatKind::Note, text)
@@ -115,12 +114,11 @@ impl LaterContactsReport {
                     }
                     WhyNot::DriverUnknown => Phrase::new(
                         "to have them followed, say what its driver did: [striking_after] driver_braked",
-                        "Sie werden verfolgt, sobald feststeht, was der Fahrer des stoßenden Fahrzeugs \
-                         tat: [striking_after] driver_braked",
+                        "Sie werden verfolgt, sobald feststeht, was der Fahrer des stoßenden Fahrzeugs tat",
                     ),
                     _ => Phrase::new(
                         "leave out --one-contact",
-                        "Ohne --one-contact werden sie verfolgt",
+                        "Gefragt ist allein nach dem ersten Kontakt",
                     ),
                 };
                 let text = Phrase::new(
@@ -155,6 +153,19 @@ pub(super) fn not_looked_for() -> Option<Caveat> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+
+    /// “Ohne --one-contact werden sie verfolgt” and “[striking_rest]” stood in German reports.
+    #[test]
+    fn no_german_text_names_an_option_or_a_key() {
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let all = [WhyNot::Asked, WhyNot::NoEvidence, WhyNot::DriverUnknown, WhyNot::Stopped];
+        for why_not in all.map(Some).into_iter().chain([None]) {
+            let caveat = LaterContactsReport::new(0.3, why_not).caveat().unwrap();
+            let text = caveat.text_in(&german, &str::to_owned).unwrap();
+            assert!(!text.contains('[') && !text.contains("--"), "{text}");
+        }
+    }
 
     #[test]
     fn later_contacts_are_followed_where_the_evidence_tells_and_a_person_hears_of_them() {

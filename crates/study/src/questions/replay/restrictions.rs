@@ -259,8 +259,8 @@ fn disagreement(check: Option<&YawRateCheck>) -> Option<Caveat> {
     let check = check.filter(|check| check.disagrees)?;
     let cause = match (check.is_opposite(), &check.implied_steering_ratio) {
         (true, _) => Phrase::new(
-            "it is to the other side: say --yaw-rate left or --steering right if the record counts so",
-            "sie geht zur anderen Seite: --yaw-rate left oder --steering right angeben, wenn die Aufzeichnung so \
+            "it is to the other side; say --yaw-rate left or --steering right if the record counts so",
+            "sie geht zur anderen Seite; zu prüfen ist, zu welcher Seite die Aufzeichnung Gierrate und Lenkung \
              zählt",
         ),
         (false, Some(ratio)) => Phrase::new(
