@@ -148,7 +148,7 @@ fn unit_symbol(symbol: &'static str, language: Language) -> &'static str {
 
 /// A scene as the report shows it.
 fn shown_still(still: &SceneStill, wording: &Wording) -> SceneStill {
-    let name = |name: &mut String| *name = course_name(name, wording);
+    let name = |name: &mut String| *name = wording.name(name);
     let mut scene = (*still.scene).clone();
     scene.title.clear();
     scene.language = wording.language;
@@ -167,15 +167,6 @@ fn shown_still(still: &SceneStill, wording: &Wording) -> SceneStill {
     scene.crosses.iter_mut().for_each(|it| name(&mut it.name));
     scene.density.iter_mut().for_each(|it| name(&mut it.name));
     SceneStill { scene: scene.into(), ..still.clone() }
-}
-
-/// A name of a scene; that of one of several courses of events has its probability before it.
-fn course_name(name: &str, wording: &Wording) -> String {
-    let course = name.split_once(" %: ").filter(|(chance, _)| chance.parse::<f64>().is_ok());
-    match course {
-        Some((chance, course)) => format!("{} %: {}", wording.local(chance), wording.name(course)),
-        None => wording.name(name),
-    }
 }
 
 /// Caveats with their sentences in the language and the units of the report, and without what a picture
@@ -204,6 +195,8 @@ mod tests {
     use impactlab_core::uncertainty::PlanarGrid;
     use impactlab_core::units::{Quantity, UnitSystem};
     use impactlab_core::vehicle::Preset;
+    use impactlab_reconstruct::Mode;
+    use impactlab_study::ReconstructedPaths;
     use impactlab_study::analysis::DensityMap;
 
     /// “36.9 %: turns right by about 180°, the driver does not brake” stood in German legends.
@@ -212,10 +205,22 @@ mod tests {
         let date = ReportDate::new(2026, 11, 24).unwrap();
         let (language, units, paper) = (Language::De, UnitSystem::Si, Paper::A4);
         let german = Wording::new(&ReportSettings { language, units, paper, date });
-        let name = "36.9 %: turns right by about 180°, the driver does not brake";
+        let course = Mode {
+            name: "turns right by about 180°, the driver does not brake".to_owned(),
+            probability: 0.369,
+            standard_error: 0.02,
+            quantities: Vec::new(),
+            members: Vec::new(),
+        };
+        let told = |wording: &Wording| {
+            ReconstructedPaths::course_name(&course, wording, &|label| wording.name(label))
+        };
         let expected = "36,9 %: dreht um etwa 180° nach rechts, der Fahrer bremst nicht";
-        assert_eq!(course_name(name, &german), expected);
-        assert_eq!(course_name(name, &Wording::english(UnitSystem::Si)), name);
+        assert_eq!(told(&german), expected);
+        // What a picture has in the language of the report already stays as it is.
+        assert_eq!(german.name(expected), expected);
+        let english = "36.9 %: turns right by about 180°, the driver does not brake";
+        assert_eq!(told(&Wording::english(UnitSystem::Si)), english);
     }
 
     fn part(heading: f64) -> Part {

@@ -105,8 +105,9 @@ impl ReconstructReport {
         let row = |mode: &Mode| {
             let speed = mode.quantities.first();
             let speed = speed.map(|of| Value::drawn(of.quantity(), &of.estimate));
+            // All particles of one course do not make it certain.
             let values = vec![
-                Value::Share(mode.probability),
+                Value::Chance(mode.probability, None),
                 Value::ShareError(mode.standard_error),
                 speed.unwrap_or_else(|| Value::Text(String::new())),
             ];

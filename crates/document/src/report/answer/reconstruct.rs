@@ -110,7 +110,7 @@ fn pictures(
     let Context { wording, .. } = context;
     let (words, units, report) = (wording.words, wording.units, &answer.report);
     let caveats = &report.caveats;
-    let paths = ReconstructedPaths::from_answer(answer);
+    let paths = ReconstructedPaths::in_language(answer, wording, &|label| wording.name(label));
     let scene = ReconstructionScene::new(answer, &paths);
     let plan = PartPicture::figure(
         words.reconstruction_picture.to_owned(),

@@ -30,7 +30,7 @@ pub struct ReconstructedPaths {
 /// A path with its name in a legend.
 #[derive(Debug, Clone)]
 pub struct NamedPath {
-    /// The name.
+    /// The name; where several courses of events are possible, as [`ReconstructedPaths::course_name`] tells it.
     pub name: String,
     /// The path.
     pub path: Path,
@@ -40,25 +40,45 @@ impl ReconstructedPaths {
     /// What the path of a particle of median speed is called.
     const MEDIAN: &str = "a particle of median speed";
 
-    /// Simulates paths of an answer's particles.
+    /// Simulates paths of an answer's particles, with English names.
     pub fn from_answer(answer: &ReconstructAnswer) -> Self {
+        Self::in_language(answer, &NumberFormat::default(), &str::to_owned)
+    }
+
+    /// The same with the names of several courses of events in a language.
+    ///
+    /// - `term`: a label of the program in the language of the format.
+    pub fn in_language(
+        answer: &ReconstructAnswer,
+        format: &NumberFormat,
+        term: &dyn Fn(&str) -> String,
+    ) -> Self {
         let all: Vec<usize> = (0..answer.particles.z.len()).collect();
         let drawn = drawn(answer, &all);
         let report = &answer.report;
-        let name = |mode: &Mode| {
-            let chance = NumberFormat::default().percent(mode.probability);
-            format!("{chance}: {}", mode.name)
-        };
         match report.modes.as_slice() {
             [first, rest @ ..] if !rest.is_empty() => {
-                let of =
-                    |mode: &Mode| followed(answer, name(mode), &mode.members, &mode.quantities);
+                let of = |mode: &Mode| {
+                    let name = Self::course_name(mode, format, term);
+                    followed(answer, name, &mode.members, &mode.quantities)
+                };
                 let (median, marks) = of(first).unzip();
                 let others = rest.iter().filter_map(|mode| Some(of(mode)?.0)).collect();
                 Self { drawn, median, others, marks: marks.unwrap_or_default() }
             }
             _ => Self::new(drawn, followed(answer, Self::MEDIAN, &all, &report.quantities)),
         }
+    }
+
+    /// What one of several courses of events is called in a legend: its probability, and its name.
+    ///
+    /// - `term`: a label of the program in the language of the format.
+    pub fn course_name(
+        mode: &Mode,
+        format: &NumberFormat,
+        term: &dyn Fn(&str) -> String,
+    ) -> String {
+        format!("{}: {}", format.chance(mode.probability, None), term(&mode.name))
     }
 
     /// What stands above one of several courses of events: its probability with its standard error, and its
