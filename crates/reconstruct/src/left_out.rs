@@ -197,7 +197,7 @@ fn tail_probability(particles: &[&[EvidenceTerm]]) -> Option<f64> {
     let tail = |idx: usize| {
         let terms: Vec<&EvidenceTerm> =
             particles.iter().filter_map(|terms| terms.get(idx)).collect();
-        terms.iter().all(|term| term.has_sides).then(|| {
+        terms.iter().all(|term| term.compared_by.has_sides()).then(|| {
             let below = standard_differences(&terms).into_iter().map(normal_cdf);
             let u = below.sum::<f64>() / terms.len() as f64;
             2.0 * u.min(1.0 - u)
@@ -234,6 +234,7 @@ fn standard_differences(terms: &[&EvidenceTerm]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ComparedBy;
     use std::f64::consts::PI;
 
     fn term(found: f64, expected: f64, sigma: f64) -> EvidenceTerm {
@@ -244,7 +245,7 @@ mod tests {
             expected,
             found,
             distance,
-            has_sides: true,
+            compared_by: ComparedBy::Number,
         }
     }
 
@@ -260,7 +261,8 @@ mod tests {
         };
         assert!((p(50.0) - 1.0).abs() < 0.02 && (p(5.0) - 0.11).abs() < 0.02, "{}", p(5.0));
         assert!(p(101.0) < 1e-6 && p(-1.0) < 1e-6);
-        let distance = EvidenceTerm { has_sides: false, ..term(3.0, 0.0, 1.0) };
+        let compared_by = ComparedBy::DistanceToPath;
+        let distance = EvidenceTerm { compared_by, ..term(3.0, 0.0, 1.0) };
         assert_eq!(tail_probability(&[&[distance]]), None);
     }
 

@@ -57,7 +57,7 @@ pub use latent::{
     PUSH_PROBABILITY, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
 pub use left_out::LeftOut;
-pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
+pub use likelihood::{ComparedBy, Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior};
 pub use prior::{Prior, PriorComponent, PriorSource};

@@ -153,7 +153,7 @@ impl Mark {
             let expected_m = expected_m.unwrap_or(at.travelled_m + NEVER_M);
             let numbers = [expected_m, at.travelled_m];
             let name = format!("{name}, {end} along the path");
-            comparison.add_single(&name, "m", numbers, sigma_m, common);
+            comparison.add_place(&name, numbers, sigma_m, common);
         }
         if let Some(kind) = self.kind {
             let share = onset.locked_share(&wheel, first.idx, last.idx);

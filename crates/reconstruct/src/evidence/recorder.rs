@@ -160,8 +160,8 @@ impl Edr {
         let size = recorded[0].hypot(recorded[1]);
         let sigma = comparison.discrepancy.delta_v_share * size + LEAST_DELTA_V_SIGMA_M_S;
         for (name, bounds, expected) in [
-            ("EDR delta-v along x", self.delta_v_x(), recorded[0]),
-            ("EDR delta-v along y", self.delta_v_y(), recorded[1]),
+            ("EDR delta-v along x, middle of its bounds", self.delta_v_x(), recorded[0]),
+            ("EDR delta-v along y, middle of its bounds", self.delta_v_y(), recorded[1]),
         ] {
             let Some([low, high]) = bounds else { continue };
             let beyond = (low - expected).max(expected - high).max(0.0) / sigma;

@@ -3,6 +3,9 @@
 
 use std::ops::Range;
 
+use schemars::JsonSchema;
+use serde::Serialize;
+
 use crate::evidence::Measured;
 use crate::likelihood::discrepancy::{Discrepancy, PathResidual, student};
 use crate::likelihood::track::Track;
@@ -11,6 +14,30 @@ use impactlab_core::vehicle::{Manoeuvre, VehicleParameters};
 
 /// Degrees of freedom of the Student distributions of single numbers.
 pub(crate) const SINGLE_DEGREES_OF_FREEDOM: f64 = 4.0;
+
+/// By what an item of the evidence is compared with a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ComparedBy {
+    /// A number that was found, whatever the motion is.
+    Number,
+    /// The place on the path that is nearest to where something was found: it is computed with each motion.
+    PlaceOnPath,
+    /// The distance from the path to what was found: it is computed with each motion, and has no sides.
+    DistanceToPath,
+}
+
+impl ComparedBy {
+    /// Whether it can lie to either side of what is expected.
+    pub fn has_sides(self) -> bool {
+        self != Self::DistanceToPath
+    }
+
+    /// Whether it was found itself, and not computed with a motion.
+    pub fn is_found(self) -> bool {
+        self == Self::Number
+    }
+}
 
 /// One item of the evidence against one motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,12 +48,12 @@ pub struct EvidenceTerm {
     pub unit: &'static str,
     /// What the motion would leave.
     pub expected: f64,
-    /// What was found.
+    /// What was found, or what follows from it with the motion.
     pub found: f64,
     /// Squared distance between both in units of what measurement and model err by.
     pub distance: f64,
-    /// Whether what was found can lie to either side of what is expected, as a distance cannot.
-    pub has_sides: bool,
+    /// What `found` is.
+    pub compared_by: ComparedBy,
 }
 
 /// A part of the evidence that can be left out.
@@ -169,18 +196,23 @@ impl<'a> Comparison<'a> {
     ) {
         if self.wants_terms {
             let name = format!("{}{name}", self.car.prefix);
-            let has_sides = true;
-            self.terms.push(EvidenceTerm { name, unit, expected, found, distance, has_sides });
+            let compared_by = ComparedBy::Number;
+            self.terms.push(EvidenceTerm { name, unit, expected, found, distance, compared_by });
         }
     }
 
-    /// Adds a distance that is told, which has no sides.
+    /// Says of the term that was told last what it is compared by.
+    fn last_is(&mut self, compared_by: ComparedBy) {
+        let told = self.terms.last_mut().filter(|_| self.wants_terms);
+        told.into_iter().for_each(|term| term.compared_by = compared_by);
+    }
+
+    /// Adds a distance to the path that is told, which has no sides.
     ///
     /// - `distance`: squared, in units of what measurement and model err by.
-    pub fn tell_distance(&mut self, name: &str, found_m: f64, distance: f64) {
-        self.tell(name, "m", [0.0, found_m], distance);
-        let told = self.terms.last_mut().filter(|_| self.wants_terms);
-        told.into_iter().for_each(|term| term.has_sides = false);
+    pub fn tell_distance(&mut self, name: &str, off_m: f64, distance: f64) {
+        self.tell(name, "m", [0.0, off_m], distance);
+        self.last_is(ComparedBy::DistanceToPath);
     }
 
     /// What was measured by itself: it is a part of the prior, and told beside the rest.
@@ -215,20 +247,21 @@ impl<'a> Comparison<'a> {
         self.log_likelihood += all;
     }
 
-    /// A number by itself.
+    /// A place on the path by itself.
     ///
-    /// - `weight`: 1, or less where other numbers err with it.
-    pub fn add_single(
+    /// - `[expected_m, found_m]`: along the path;
+    /// - `weight`: 1, or less where other places err with it.
+    pub fn add_place(
         &mut self,
         name: &str,
-        unit: &'static str,
-        [expected, found]: [f64; 2],
-        sigma: f64,
+        [expected_m, found_m]: [f64; 2],
+        sigma_m: f64,
         weight: f64,
     ) {
-        let distance = ((found - expected) / sigma).powi(2);
-        let density = student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM) - sigma.ln();
+        let distance = ((found_m - expected_m) / sigma_m).powi(2);
+        let density = student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM) - sigma_m.ln();
         self.log_likelihood += weight * density;
-        self.tell(name, unit, [expected, found], distance);
+        self.tell(name, "m", [expected_m, found_m], distance);
+        self.last_is(ComparedBy::PlaceOnPath);
     }
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-use crate::likelihood::EvidenceTerm;
+use crate::likelihood::{ComparedBy, EvidenceTerm};
 use impactlab_core::numerics::wrap_angle_rad;
 
 /// One item of the evidence against the whole posterior.
@@ -16,9 +16,11 @@ pub struct EvidenceFit {
     pub unit: &'static str,
     /// Median over the posterior of what would be found.
     pub expected: f64,
-    /// What was found; the median over the posterior where it depends on the motion, as the distance of
-    /// a mark to the path.
+    /// What was found; where that depends on the motion, as the distance from the path to a mark, its median
+    /// over the posterior.
     pub found: f64,
+    /// What `found` is.
+    pub compared_by: ComparedBy,
     /// Posterior predictive p: the probability that measurement and model err by more than they do here.
     pub p: f64,
 }
@@ -54,6 +56,7 @@ impl EvidenceFit {
                     unit: item.unit,
                     expected: median(all.iter().map(|term| around(term.expected, item)).collect()),
                     found: median(all.iter().map(|term| term.found).collect()),
+                    compared_by: item.compared_by,
                     p: p.clamp(0.0, 1.0),
                 }
             })
@@ -95,7 +98,7 @@ mod tests {
             expected: 1.0,
             found: 2.0,
             distance,
-            has_sides: true,
+            compared_by: ComparedBy::Number,
         };
         let particles = vec![vec![term("near", 0.5), term("far", 16.0)]; 3];
         let fit = EvidenceFit::from_particles(&particles);

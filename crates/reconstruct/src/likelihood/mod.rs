@@ -9,7 +9,7 @@ mod onset;
 mod target;
 mod track;
 
-pub use comparison::EvidenceTerm;
+pub use comparison::{ComparedBy, EvidenceTerm};
 pub use discrepancy::Discrepancy;
 pub use fit::EvidenceFit;
 pub use target::ReconstructionTarget;

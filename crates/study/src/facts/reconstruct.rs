@@ -2,8 +2,8 @@
 
 use impactlab_core::units::Quantity;
 use impactlab_reconstruct::{
-    BudgetItem, EvidenceFit, HandCheck, LeftOut, MarkComparison, Mode, QuantityEstimate,
-    SpeedChange, SpeedHinge,
+    BudgetItem, ComparedBy, EvidenceFit, HandCheck, LeftOut, MarkComparison, Mode,
+    QuantityEstimate, SpeedChange, SpeedHinge,
 };
 
 use crate::facts::simulate::zones;
@@ -22,7 +22,8 @@ impl ReconstructReport {
             self.hinge_table(),
             Some(self.speed_table()),
             self.hand_table(),
-            Some(self.fit_table()),
+            self.fit_table(),
+            self.path_fit_table(),
             self.left_out_table(),
             self.mark_table(),
             self.budget_table(),
@@ -131,11 +132,16 @@ impl ReconstructReport {
         several.map(table).collect()
     }
 
-    /// Each item of the evidence: found, expected, and whether anything explains it.
-    pub fn fit_table(&self) -> FactTable {
-        let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
-        let table = FactTable::new(Term::Fit, self.fit.iter().map(fit_fact).collect());
-        table.with_rows(Term::EvidenceItem).with_columns(&columns)
+    /// Each item of the evidence that is a number: found, expected, and whether anything explains it; none
+    /// without any.
+    pub fn fit_table(&self) -> Option<FactTable> {
+        fit_table(&self.fit, ComparedBy::is_found, [Term::Fit, Term::Found])
+    }
+
+    /// The same of marks against the computed paths: how far they lie from these, and where along them they
+    /// begin and end, which is computed and not found.
+    pub fn path_fit_table(&self) -> Option<FactTable> {
+        fit_table(&self.fit, |by| !by.is_found(), [Term::PathFit, Term::ByMark])
     }
 
     /// The speed that is asked for without each part of the evidence, and whether the part goes with the
@@ -227,6 +233,21 @@ fn quantity_fact(of: &QuantityEstimate) -> Fact {
     Fact::row(Value::Phrase(of.label().to_owned()), vec![value])
 }
 
+/// Some items of the evidence and what is expected of them; none without any.
+///
+/// - `is_wanted`: by what they are compared;
+/// - `title`, `found`: what the table is called, and its column of what is compared.
+fn fit_table(
+    fit: &[EvidenceFit],
+    is_wanted: impl Fn(ComparedBy) -> bool,
+    [title, found]: [Term; 2],
+) -> Option<FactTable> {
+    let columns = [found, Term::Expected, Term::TailProbability, Term::Verdict];
+    let wanted = fit.iter().filter(|item| is_wanted(item.compared_by));
+    let table = FactTable::new(title, wanted.map(fit_fact).collect());
+    table.with_rows(Term::EvidenceItem).with_columns(&columns).unless_empty()
+}
+
 fn fit_fact(item: &EvidenceFit) -> Fact {
     let is_warning = item.is_unexplained();
     let verdict = if is_warning { Term::Unexplained } else { Term::Explained };
@@ -257,20 +278,44 @@ mod tests {
     use crate::facts::FactWriter;
     use impactlab_core::units::UnitSystem;
 
-    /// The fit was in SI units, whatever units were chosen.
-    #[test]
-    fn the_fit_of_the_evidence_is_in_the_chosen_units() {
-        let item = |evidence: &str, unit, found| EvidenceFit {
+    fn item(evidence: &str, unit: &'static str, found: f64) -> EvidenceFit {
+        EvidenceFit {
             evidence: evidence.to_owned(),
             unit,
             expected: 2.0 * found,
             found,
+            compared_by: ComparedBy::Number,
             p: 1e-5,
+        }
+    }
+
+    /// “Found” was said of a distance to a path that was computed.
+    #[test]
+    fn what_was_computed_of_a_mark_is_not_said_to_have_been_found() {
+        let found = item("rest x", "m", 1.0);
+        let compared_by = ComparedBy::DistanceToPath;
+        let off = EvidenceFit { compared_by, ..item("mark FL, distance to the path", "m", 0.3) };
+        let items = [found, off];
+        let table = |is_wanted: fn(ComparedBy) -> bool, terms: [Term; 2]| {
+            let table = fit_table(&items, is_wanted, terms).unwrap();
+            let text = table.to_text(&FactWriter::english(UnitSystem::Si));
+            let rows: Vec<String> = text.rows.iter().map(|row| row.cells[0].clone()).collect();
+            (text.header[1].clone(), rows)
         };
+        let (column, rows) = table(ComparedBy::is_found, [Term::Fit, Term::Found]);
+        assert_eq!(column, "found");
+        assert_eq!(rows, ["rest x"]);
+        let (column, rows) = table(|by| !by.is_found(), [Term::PathFit, Term::ByMark]);
+        assert_eq!(column, "computed from the mark");
+        assert_eq!(rows, ["mark FL, distance to the path"]);
+        assert_eq!(fit_table(&items[..1], |by| !by.is_found(), [Term::Fit, Term::Found]), None);
+    }
+
+    /// The fit was in SI units, whatever units were chosen.
+    #[test]
+    fn the_fit_of_the_evidence_is_in_the_chosen_units() {
         let items = [item("rest x", "m", 0.3048), item("EDR speed", "m/s", 0.447_04)];
-        let facts = items.iter().map(fit_fact).collect();
-        let columns = [Term::Found, Term::Expected, Term::TailProbability, Term::Verdict];
-        let table = FactTable::new(Term::Fit, facts).with_columns(&columns);
+        let table = fit_table(&items, ComparedBy::is_found, [Term::Fit, Term::Found]).unwrap();
         let text = table.to_text(&FactWriter::english(UnitSystem::Us));
         let cells: Vec<&str> =
             text.rows.iter().flat_map(|row| &row.cells).map(String::as_str).collect();

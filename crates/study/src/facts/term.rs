@@ -396,7 +396,12 @@ terms! {
     StrikingCar: "striking car", "stoßendes Fzg.", "Its speed before the impact";
     SingleCar: "car", "Fahrzeug", "Its speed at the start";
     Fit: "Items of the evidence: found and expected", "Spuren: vorgefunden und erwartet";
-    Found: "found", "gefunden", "What was found, or how far it lies off";
+    PathFit: "Tire marks that were found against the computed paths",
+        "Gefundene Reifenspuren gegen die berechneten Bahnen",
+        "How far a mark lies from the path of its wheel, and where along that it begins and ends";
+    ByMark: "computed from the mark", "aus der Spur berechnet",
+        "Median over the particles: it depends on the path that is computed";
+    Found: "found", "gefunden", "What was found";
     Expected: "expected", "erwartet", "Median over the particles of what would be found";
     TailProbability: "p", "p",
         "Probability that measurement and model err by more than they do here";

@@ -70,7 +70,12 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 [marginal, pair],
                 commands,
             );
-            let found = [Some(report.fit_table()), report.left_out_table(), report.mark_table()];
+            let found = [
+                report.fit_table(),
+                report.path_fit_table(),
+                report.left_out_table(),
+                report.mark_table(),
+            ];
             let found: Vec<FactTable> = found.into_iter().flatten().collect();
             ui.add_space(looks::PART);
             facts_ui(ui, "evidence", &found, units);

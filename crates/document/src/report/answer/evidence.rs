@@ -18,8 +18,8 @@ pub(super) fn evidence_blocks(report: &ReconstructReport, context: Context<'_>) 
     let mut blocks = vec![
         Block::heading(2, report.case.clone()),
         Block::paragraph(fill(words.fit_text, &[("level", &level)])),
-        table(&report.fit_table()),
     ];
+    blocks.extend([report.fit_table(), report.path_fit_table()].iter().flatten().map(table));
     if let Some(left_out) = report.left_out_table() {
         blocks.extend([Block::paragraph(words.left_out_text), table(&left_out)]);
     }

@@ -385,6 +385,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("EDR speed before the impact", "EDR-Geschwindigkeit vor dem Aufprall"),
     ("EDR delta-v", "EDR-Δv"),
     ("striking car EDR delta-v", "EDR-Δv des stoßenden Fahrzeugs"),
+    ("middle of its bounds", "Mitte seiner Grenzen"),
     ("EDR delta-v along x", "EDR-Δv längs x"),
     ("EDR delta-v along y", "EDR-Δv längs y"),
     (

@@ -189,15 +189,20 @@ pub(super) fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
     let unexplained = fit.iter().filter(|item| item.is_unexplained());
     unexplained
         .map(|item| {
+            let found = match item.compared_by.is_found() {
+                true => Phrase::new("found", "gefunden"),
+                false => Phrase::new("computed from the mark", "aus der Spur berechnet"),
+            };
             let text = Phrase::new(
-                "{0}: found {1}, expected {2}: items of the evidence contradict each other, or the course \
+                "{0}: {3} {1}, expected {2}: items of the evidence contradict each other, or the course \
                  of events is another one; do not rely on the intervals",
-                "{0}: gefunden {1}, erwartet {2}. Anknüpfungstatsachen widersprechen einander, oder der \
+                "{0}: {3} {1}, erwartet {2}. Anknüpfungstatsachen widersprechen einander, oder der \
                  Ablauf war ein anderer; die Intervalle sind nicht verwertbar",
             )
             .with(PhraseValue::Term(item.evidence.clone()))
             .with(of_evidence(item.found, item.unit))
-            .with(of_evidence(item.expected, item.unit));
+            .with(of_evidence(item.expected, item.unit))
+            .with(PhraseValue::phrase(found));
             Caveat::new(CaveatKind::EvidenceUnexplained, text)
                 .with_value(format!("p of {}", item.evidence), item.p)
                 .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
