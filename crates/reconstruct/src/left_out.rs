@@ -35,8 +35,8 @@ pub struct LeftOut {
     /// Speed of the struck or single car without it; `None` with too few draws, and without intervals where they
     /// are too few for these.
     pub struck_speed: Option<QuantityEstimate>,
-    /// Probability that the others expect the part as far off as it is, or farther; `None` with too few
-    /// draws, and of a part that has no sides.
+    /// Upper bound of the probability that the others expect the part as far off as it is, or farther, to either
+    /// side: 1 bounds nothing. `None` with too few draws, and of a part that has no sides.
     pub p: Option<f64>,
     /// Whether the part contradicts the others.
     pub is_contradicted: bool,

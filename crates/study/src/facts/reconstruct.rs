@@ -156,7 +156,7 @@ impl ReconstructReport {
                 (Some(_), false) => Term::GoesWithOthers,
             };
             let values = vec![
-                part.p.map_or_else(nothing, Value::Probability),
+                part.p.map_or_else(nothing, Value::ProbabilityBound),
                 Value::Fixed(part.ess, 0),
                 Value::Term(verdict),
                 speed.map_or_else(nothing, |of| Value::drawn(of.quantity(), &of.estimate)),
@@ -165,8 +165,7 @@ impl ReconstructReport {
             Fact { is_warning: part.is_contradicted, ..Fact::row(name, values) }
         };
         let rows = self.left_out.iter().map(row).collect();
-        let columns =
-            [Term::TailProbability, Term::IndependentDraws, Term::Verdict, self.asked_car()];
+        let columns = [Term::SoFarOff, Term::IndependentDraws, Term::Verdict, self.asked_car()];
         FactTable::new(Term::LeftOutEvidence, rows)
             .with_rows(Term::WithoutPart)
             .with_levels(PREDICTED)

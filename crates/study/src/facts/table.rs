@@ -36,6 +36,8 @@ pub enum Value {
     ShareOfDraws(f64, usize),
     /// A probability that may be small: three decimals, and never written as nothing.
     Probability(f64),
+    /// An upper bound of a probability: that of 1 bounds nothing, and is no certainty.
+    ProbabilityBound(f64),
     /// A pure number with a fixed number of decimals.
     Fixed(f64, usize),
     /// A number without an interval, SI units.

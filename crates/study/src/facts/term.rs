@@ -426,7 +426,9 @@ terms! {
     Now: "now, ±", "jetzt, ±";
     Then: "then, ±", "dann, ±";
     LeftOutEvidence: "Without each part of the evidence", "Ohne je einen Teil der Spuren",
-        "The same draws, weighted by the likelihood without the part; p: that the others expect it as far off";
+        "The same draws, weighted by the likelihood without the part";
+    SoFarOff: "chance to lie so far off", "Wahrscheinlichkeit, so weit abzuliegen",
+        "An upper bound: with which the others expect the part as far off as it was found, or farther";
     IndependentDraws: "independent draws", "unabhängige Ziehungen";
     GoesWithOthers: "goes with the others", "passt zu den übrigen";
     Contradicted: "contradicts the others", "widerspricht den übrigen";

@@ -77,6 +77,11 @@ impl FactWriter<'_> {
                 format!("> {}", format.fixed(1.0 - LEAST_PROBABILITY, 3))
             }
             Value::Probability(p) => format.fixed(*p, 3),
+            Value::ProbabilityBound(p) if *p < LEAST_PROBABILITY => {
+                self.value(&Value::Probability(*p))
+            }
+            Value::ProbabilityBound(p) if *p >= MOST_PROBABILITY => "≤ 1".to_owned(),
+            Value::ProbabilityBound(p) => format!("≤ {}", format.fixed(*p, 3)),
             Value::Fixed(number, decimals) => format.fixed(*number, *decimals),
             Value::Number(quantity, si) => format.value(*quantity, *si),
             Value::Decimals(quantity, si, decimals) => {
@@ -149,6 +154,10 @@ mod tests {
         assert_eq!(text(Value::Rounded(Quantity::Time, 0.003)), "0.003 s");
         assert_eq!(text(Value::Probability(1.0)), "> 0.999");
         assert_eq!(text(Value::Probability(0.675)), "0.675");
+        // A bound that was cut off at 1 was told as “> 0.999”, as if the evidence were certain.
+        assert_eq!(text(Value::ProbabilityBound(1.0)), "≤ 1");
+        assert_eq!(text(Value::ProbabilityBound(0.704)), "≤ 0.704");
+        assert_eq!(text(Value::ProbabilityBound(1e-5)), "< 0.001");
     }
 
     #[test]

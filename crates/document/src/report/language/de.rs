@@ -168,10 +168,12 @@ pub(super) const WORDS: Words = Words {
     marginal_picture: "{quantity}: wie wahrscheinlich sie ohne die Spuren ist und mit ihnen",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
-    left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. p ist eine obere Schranke der \
-        Wahrscheinlichkeit, dass die übrigen ihn so weit entfernt erwarten, wie er vorgefunden wurde, oder weiter: die \
-        kleinste seiner Merkmale mal deren Anzahl, höchstens 1. Ein Teil, der das Ergebnis mit sich zieht, \
-        wird von einem Ergebnis erklärt, das ihm folgt; hier wird er selbst nicht gefragt.",
+    left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. Die Wahrscheinlichkeit, so weit abzuliegen, ist \
+        die, mit der die übrigen Teile ihn nach der einen oder der anderen Seite so weit entfernt erwarten, wie er \
+        vorgefunden wurde, oder weiter; angegeben ist eine obere Schranke: die kleinste seiner Merkmale mal deren \
+        Anzahl. „≤ 1“ beschränkt nichts: kein Merkmal des Teils überrascht, was nicht beweist, dass der Teil richtig \
+        ist. Ein Teil, der das Ergebnis mit sich zieht, wird von einem Ergebnis erklärt, das ihm folgt; hier wird er \
+        selbst nicht gefragt.",
     several_courses: "Mehr als ein Ablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
         stehenden über alle können für keinen davon zutreffen.",
     hinges_text: "Eine Ausgleichsgerade durch die Partikel sagt, um wie viel sich eine Geschwindigkeit im Mittel \
