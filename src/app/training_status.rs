@@ -146,6 +146,23 @@ impl<M: TrainedModel> TrainingStatus<M> {
         self.latest = Some(report);
     }
 
+    /// How far the training has got, such as “epoch 3 of 100”; `None` before its first report.
+    pub fn reached(&self) -> Option<String> {
+        Some(match self.latest.as_ref()? {
+            TrainingReport::Fit(fit) => fit.to_string(),
+            TrainingReport::Epoch(epoch) => {
+                let part = epoch.part().map_or(String::new(), |part| format!("{part}, "));
+                let (done, n_epochs) = (epoch.epoch_in_training(), epoch.n_in_training());
+                format!("{part}epoch {done} of {n_epochs}")
+            }
+        })
+    }
+
+    /// Whether the training was cancelled before there was a model.
+    pub fn has_no_model(&self) -> bool {
+        self.is_over && self.report.is_none() && self.problem.is_none()
+    }
+
     /// Returns the note with which a model that the training has just given is kept.
     ///
     /// - `name`: what the model is called;
@@ -159,6 +176,10 @@ impl<M: TrainedModel> TrainingStatus<M> {
         let mut entry = ArchiveEntry::new(kind, name, model.data().to_owned(), question);
         entry.is_cancelled = !is_complete;
         entry.figures = StoredFact::from_table(&model.facts());
+        if let Some(reached) = self.reached().filter(|_| !is_complete) {
+            // The facts of the model know the epochs that were run, and not those that were planned.
+            entry.figures.insert(0, StoredFact::new("reached", reached));
+        }
         entry.settings = model.settings().as_ref().map_or_else(Vec::new, StoredFact::from_table);
         let time = Duration::try_from_secs_f64(M::seconds(report)).unwrap_or_default();
         entry.figures.push(StoredFact::new("computing time", duration_text(time)));
@@ -194,15 +215,9 @@ impl<M: TrainedModel> TrainingStatus<M> {
 
     /// Returns a description of what the training is doing, shown to the user.
     pub fn doing(&self) -> String {
-        let what = match &self.latest {
-            _ if self.run.is_cancelled() => "ending".to_owned(),
-            None => "preparing".to_owned(),
-            Some(TrainingReport::Fit(fit)) => fit.to_string(),
-            Some(TrainingReport::Epoch(epoch)) => {
-                let part = epoch.part().map_or(String::new(), |part| format!("{part}, "));
-                let (done, n_epochs) = (epoch.epoch_in_training(), epoch.n_in_training());
-                format!("{part}epoch {done} of {n_epochs}")
-            }
+        let what = match self.run.is_cancelled() {
+            true => "ending".to_owned(),
+            false => self.reached().unwrap_or_else(|| "preparing".to_owned()),
         };
         if self.run.is_paused() { format!("paused: {what}") } else { what }
     }
@@ -233,6 +248,27 @@ mod tests {
         status.take(TrainingReport::Fit(fit));
         assert_eq!(status.progress(), (Some(0.0), None));
         assert!(status.doing().starts_with("after the epochs: "));
+    }
+
+    /// “epoch 1 of 1” was told of a training of 100 epochs that was cancelled after the first one.
+    #[test]
+    fn an_epoch_is_told_with_those_that_were_planned() {
+        let model = ModelSource::Shipped.force_model().unwrap();
+        let first = model.history()[0].clone();
+        let mut status = TrainingStatus::<ForceModel>::default();
+        assert_eq!(status.reached(), None);
+        status.take(TrainingReport::Epoch(EpochReport {
+            summary: first,
+            n_before: 0,
+            n_epochs: 100,
+            best_epoch: Some(1),
+            training_idx: 0,
+            n_trainings: 1,
+            n_done_elsewhere: 0,
+            n_at_once: 1,
+        }));
+        status.is_over = true;
+        assert_eq!(status.reached().as_deref(), Some("epoch 1 of 100"));
     }
 
     /// Those of the shipped network stood under the name of a log that was learned from.

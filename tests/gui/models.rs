@@ -221,6 +221,13 @@ fn a_cancelled_training_is_kept_as_such_and_can_be_resumed_but_is_not_used() {
             && !state.session.unfinished.list.trainings.is_empty()
     });
     assert!(entries(&harness)[0].is_cancelled);
+    // “epoch 3 of 3” was told of one that was cancelled after the third of many.
+    let reached = &entries(&harness)[0].figures[0];
+    assert_eq!(reached.label, "reached");
+    assert!(reached.text.ends_with(" of 100000"), "{reached:?}");
+    let said = state(&harness).session.log.iter().map(|(_, message)| &message.text);
+    let said = said.filter(|text| text.starts_with("training cancelled (epoch ")).count();
+    assert_eq!(said, 1);
     assert_eq!(in_use(&harness).1, "shipped");
     desk.store(&mut harness);
     drop(harness);

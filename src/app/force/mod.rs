@@ -13,6 +13,7 @@ pub use edit::{
 };
 pub use recorded::RecordedCase;
 pub use settings::{ForceView, Statistic};
+pub(in crate::app) use update::WITHOUT_MODEL;
 
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;

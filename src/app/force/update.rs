@@ -16,6 +16,9 @@ use impactlab_core::error_chain;
 use impactlab_networks::force::{ForceCase, ForceScenario};
 use impactlab_study::{ForceQuestion, PredictForceAnswer};
 
+/// What is said of a training that was cancelled before there was anything to keep.
+pub(in crate::app) const WITHOUT_MODEL: &str = "training cancelled before it had a model";
+
 impl State {
     /// Receives the results of the loader, the training, the evaluation and the forecast, and asks
     /// for a new forecast if the question has changed.
@@ -41,7 +44,7 @@ impl State {
                 let record = model.record();
                 let name =
                     format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
-                let of = format!("{name} of {}", record.history.len());
+                let of = format!("{name}, the best of {}", record.history.len());
                 let draft = force.training.archive_note(&model, name.clone(), is_complete);
                 let used =
                     (is_complete && may_be_used).then_some(&mut self.project.predict_force.model);
@@ -49,11 +52,16 @@ impl State {
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ForceSession { model: status, training, .. } = force;
                 keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
-                self.say_of_training(&of, is_complete);
+                let reached = training.reached();
+                self.say_of_training(&of, is_complete, reached);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }
-        if was_running && !self.session.force.training.run.is_running() {
+        let training = &self.session.force.training;
+        if was_running && !training.run.is_running() {
+            if training.has_no_model() {
+                self.say(Severity::Info, WITHOUT_MODEL);
+            }
             self.read_unfinished();
         }
     }
@@ -67,19 +75,26 @@ impl State {
     /// Tells the user that a training has ended.
     ///
     /// - `name`: description of the trained model;
-    /// - `is_complete`: whether the training was completed; otherwise it was cancelled.
-    pub(in crate::app) fn say_of_training(&mut self, name: &str, is_complete: bool) {
-        self.say(
-            Severity::Info,
-            match is_complete {
-                true if self.takes_trained() => format!("training over: {name}, which is in use now"),
-                true => format!(
-                    "training over: {name}, which changes no answer about the scenario until it is put \
-                     into use (Training, or Models)"
-                ),
-                false => format!("training cancelled: {name}, which is not in use"),
-            },
-        );
+    /// - `is_complete`: whether the training was completed; otherwise it was cancelled;
+    /// - `reached`: how far it had got.
+    pub(in crate::app) fn say_of_training(
+        &mut self,
+        name: &str,
+        is_complete: bool,
+        reached: Option<String>,
+    ) {
+        let text = match is_complete {
+            true if self.takes_trained() => format!("training over: {name}, which is in use now"),
+            true => format!(
+                "training over: {name}, which changes no answer about the scenario until it is put \
+                 into use (Training, or Models)"
+            ),
+            false => {
+                let at = reached.map_or(String::new(), |reached| format!(" ({reached})"));
+                format!("training cancelled{at}: {name}, which is not in use")
+            }
+        };
+        self.say(Severity::Info, text);
     }
 
     /// Asks for the force of the collision, if the question has changed.

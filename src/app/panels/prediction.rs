@@ -72,7 +72,7 @@ fn model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
     let Some(current) = &force.model.current else { return };
     let record = current.model.record();
     let hint = format!(
-        "Trained on {}: {} cases, {} for validation; {} kept for the test. Epoch {} of {}, seed {}, {} weights, impactlab {}",
+        "Trained on {}: {} cases, {} for validation; {} kept for the test. Weights of epoch {}, the best of {}; seed {}, {} weights, impactlab {}",
         record.data,
         record.train.len(),
         record.detail.validation.len(),

@@ -7,6 +7,7 @@ use egui::Context;
 
 use crate::app::archive::{ArchiveEntry, keep_trained};
 use crate::app::command::{ComparisonCommand, wake};
+use crate::app::force::WITHOUT_MODEL;
 use crate::app::found::Found;
 use crate::app::response::comparison::write_comparison_folder;
 use crate::app::response::{
@@ -52,11 +53,16 @@ impl State {
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ResponseSession { model: status, training, .. } = response;
                 keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
-                self.say_of_training(&name, is_complete);
+                let reached = training.reached();
+                self.say_of_training(&name, is_complete, reached);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }
-        if was_running && !self.session.response.training.run.is_running() {
+        let training = &self.session.response.training;
+        if was_running && !training.run.is_running() {
+            if training.has_no_model() {
+                self.say(Severity::Info, WITHOUT_MODEL);
+            }
             self.read_unfinished();
         }
     }
