@@ -116,6 +116,10 @@ sources! {
     /// Hochschule Wien, 1966. Impact with compression to a common velocity and restitution as a
     /// share of the impulse of compression; sliding on a contact plane.
     Kudlich1966;
+    /// G. M. Machado, M. M. Oliveira, L. A. F. Fernandes, *A physiologically-based model for simulation of
+    /// color vision deficiency*, IEEE Transactions on Visualization and Computer Graphics 15(6), 2009.
+    /// Matrices for linear red, green and blue.
+    Machado2009;
     /// M. D. McKay, R. J. Beckman, W. J. Conover, *A comparison of three methods for selecting values of
     /// input variables in the analysis of output from a computer code*, Technometrics 21(2), 1979.
     /// Latin hypercube sampling.

@@ -96,7 +96,7 @@ fn keep_together(ui: &mut Ui, name: &str) {
     }
 }
 
-/// A dot in the colour of an element; for a dashed or dotted line two dashes or three small dots.
+/// A dot in the colour of an element; for a dashed or dotted line a few dashes or three small dots.
 fn marker_ui(ui: &mut Ui, element: &FigureElement, color: Color32) {
     let size = TextStyle::Small.resolve(ui.style()).size;
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(size), Sense::hover());
@@ -111,8 +111,8 @@ fn marker_ui(ui: &mut Ui, element: &FigureElement, color: Color32) {
         }
         LineStyle::Dashed => {
             let stroke = Stroke::new(theme::line_width(element.role()), color);
-            for [from, to] in [[-0.5, -0.1], [0.1, 0.5]] {
-                let x = [from, to].map(|share: f32| centre.x + share * size);
+            for ends in theme::dashes(element.role()).sample {
+                let x = ends.map(|share| centre.x + share * size);
                 painter.hline(Rangef::new(x[0], x[1]), centre.y, stroke);
             }
         }

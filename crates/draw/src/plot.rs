@@ -389,8 +389,8 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, dark: bool, element: &'a FigureElemen
     let stroke = Stroke::new(theme::line_width(element.role()), color);
     let style = |series: &Series| match series.style {
         LineStyle::Solid => PlotLineStyle::Solid,
-        LineStyle::Dashed => PlotLineStyle::dashed_loose(),
-        LineStyle::Dotted => PlotLineStyle::dotted_loose(),
+        LineStyle::Dashed => PlotLineStyle::Dashed { length: theme::dashes(series.role).length },
+        LineStyle::Dotted => PlotLineStyle::Dotted { spacing: theme::dashes(series.role).length },
     };
     let height = |y: f64| if log_y { y.log10() } else { y };
     let points = |series: &Series| {

@@ -16,11 +16,35 @@ pub const THIN_LINE_WIDTH: f32 = 1.0;
 /// Opacity of the fill of an outline, 0 to 1.
 pub const FILL_OPACITY: f32 = 0.18;
 
-/// Colours of the variants beside the one in the forms, for a light and a dark ground.
-const VARIANTS: [([u8; 3], [u8; 3]); 3] = [
-    ([150, 110, 0], [225, 190, 80]),
-    ([110, 70, 170], [170, 140, 230]),
-    ([165, 30, 60], [235, 110, 130]),
+/// Colours of the variants beside the one in the forms and of further courses of events, for a light and a
+/// dark ground. They and the colour of the simulation are told apart by everybody: where two hues are the
+/// same to an eye, their lightness differs. A test measures it.
+const VARIANTS: [([u8; 3], [u8; 3]); 8] = [
+    ([100, 60, 0], [255, 210, 50]),
+    ([20, 40, 160], [140, 120, 255]),
+    ([70, 20, 100], [160, 120, 150]),
+    ([100, 0, 30], [0, 255, 180]),
+    ([210, 100, 150], [220, 250, 130]),
+    ([210, 40, 80], [180, 250, 255]),
+    ([150, 20, 90], [200, 120, 110]),
+    ([140, 140, 30], [230, 100, 60]),
+];
+
+/// How a dashed line is dashed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dashes {
+    /// Length of a dash, points.
+    pub length: f32,
+    /// From where to where the dashes of its sample in a legend are, as shares of its width on both sides of
+    /// the middle.
+    pub sample: &'static [[f32; 2]],
+}
+
+/// Dashes of a line, which tell variants apart beside their colours.
+const DASHES: [Dashes; 3] = [
+    Dashes { length: 10.0, sample: &[[-0.5, -0.1], [0.1, 0.5]] },
+    Dashes { length: 5.0, sample: &[[-0.5, -0.28], [-0.11, 0.11], [0.28, 0.5]] },
+    Dashes { length: 18.0, sample: &[[-0.5, 0.22], [0.4, 0.5]] },
 ];
 
 /// Colour of a role.
@@ -40,6 +64,14 @@ pub fn color(role: Role, dark: bool) -> Color32 {
     };
     let [r, g, b] = if dark { dark_ground } else { light_ground };
     Color32::from_rgb(r, g, b)
+}
+
+/// How a dashed line of a role is dashed.
+pub fn dashes(role: Role) -> Dashes {
+    match role {
+        Role::Variant(idx) => DASHES[idx % DASHES.len()],
+        _ => DASHES[0],
+    }
 }
 
 /// Colour of the time cursor.
@@ -75,4 +107,107 @@ pub fn severity_color(severity: Severity, dark: bool) -> Color32 {
     };
     let [r, g, b] = if dark { dark_ground } else { light_ground };
     Color32::from_rgb(r, g, b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Least difference of two colours in CIELAB, ΔE of 1976: a person sees one of 2 beside each other, and
+    /// has to know a thin line again.
+    const LEAST_DIFFERENCE: f64 = 20.0;
+    /// Least contrast of a line to its ground (WCAG 2.1, 1.4.11).
+    const LEAST_CONTRAST: f64 = 3.0;
+
+    /// What the eye makes of linear red, green and blue: usually, and without the cones for long, medium and
+    /// short waves. [`Machado2009`](impactlab_core::bibliography::Machado2009), severity 1.
+    const SIGHTS: [[[f64; 3]; 3]; 4] = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [
+            [0.152_286, 1.052_583, -0.204_868],
+            [0.114_503, 0.786_281, 0.099_216],
+            [-0.003_882, -0.048_116, 1.051_998],
+        ],
+        [
+            [0.367_322, 0.860_646, -0.227_968],
+            [0.280_085, 0.672_501, 0.047_413],
+            [-0.011_820, 0.042_940, 0.968_881],
+        ],
+        [
+            [1.255_528, -0.076_749, -0.178_779],
+            [-0.078_411, 0.930_809, 0.147_602],
+            [0.004_733, 0.691_367, 0.303_900],
+        ],
+    ];
+
+    fn product(matrix: &[[f64; 3]; 3], vector: [f64; 3]) -> [f64; 3] {
+        matrix.map(|row| row.iter().zip(vector).map(|(a, b)| a * b).sum())
+    }
+
+    /// Red, green and blue in proportion to the light.
+    fn linear(color: Color32) -> [f64; 3] {
+        [color.r(), color.g(), color.b()].map(|channel| {
+            let share = f64::from(channel) / 255.0;
+            if share <= 0.040_45 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+        })
+    }
+
+    /// A colour in CIELAB, under daylight D65.
+    fn lab(linear: [f64; 3]) -> [f64; 3] {
+        let to_xyz = [
+            [0.412_456_4, 0.357_576_1, 0.180_437_5],
+            [0.212_672_9, 0.715_152_2, 0.072_175_0],
+            [0.019_333_9, 0.119_192_0, 0.950_304_1],
+        ];
+        let xyz = product(&to_xyz, linear.map(|channel| channel.clamp(0.0, 1.0)));
+        let f = |share: f64| match share > 216.0 / 24_389.0 {
+            true => share.cbrt(),
+            false => (24_389.0 / 27.0 * share + 16.0) / 116.0,
+        };
+        let [x, y, z] = [f(xyz[0] / 0.950_47), f(xyz[1]), f(xyz[2] / 1.088_83)];
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    }
+
+    fn difference(a: [f64; 3], b: [f64; 3]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
+    fn contrast(a: Color32, b: Color32) -> f64 {
+        let of = |color| {
+            let [r, g, b] = linear(color);
+            0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
+        };
+        let (a, b) = (of(a), of(b));
+        f64::max(a, b) / f64::min(a, b)
+    }
+
+    /// Three colours came again from the fourth variant on.
+    #[test]
+    fn variants_and_the_simulation_are_told_apart_by_every_eye() {
+        let roles: Vec<Role> = (0..VARIANTS.len()).map(Role::Variant).collect();
+        for dark in [false, true] {
+            let colors: Vec<Color32> =
+                roles.iter().chain([&Role::Simulation]).map(|role| color(*role, dark)).collect();
+            for (idx, one) in colors.iter().enumerate() {
+                let ground = visuals(dark).panel_fill;
+                assert!(contrast(*one, ground) >= LEAST_CONTRAST, "{one:?} on {ground:?}");
+                for other in &colors[..idx] {
+                    for sight in &SIGHTS {
+                        let [a, b] = [one, other].map(|of| lab(product(sight, linear(*of))));
+                        let apart = difference(a, b);
+                        assert!(apart > LEAST_DIFFERENCE, "{one:?} {other:?}: {apart:.1}, {dark}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_colour_that_comes_again_is_dashed_otherwise() {
+        let look = |idx| (color(Role::Variant(idx), false), dashes(Role::Variant(idx)));
+        for idx in 0..3 * VARIANTS.len() {
+            let is_same = |other: &usize| look(*other) == look(idx);
+            assert_eq!((0..idx).find(is_same), None, "{idx}");
+        }
+    }
 }

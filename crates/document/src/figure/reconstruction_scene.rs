@@ -91,7 +91,11 @@ pub fn reconstruction_scene_figure(
             series: Series {
                 name: name.to_owned(),
                 role,
-                style: LineStyle::Solid,
+                // As the lines of other variants, each with dashes of its own.
+                style: match role {
+                    Role::Variant(_) => LineStyle::Dashed,
+                    _ => LineStyle::Solid,
+                },
                 points: path.points.iter().map(seen).collect(),
             },
             time_s: path.points.iter().map(|point| point.time_s).collect(),

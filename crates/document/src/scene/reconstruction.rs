@@ -101,7 +101,9 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
     // The likeliest one is drawn last and named first.
     for (idx, NamedPath { name, path }) in input.others.iter().enumerate().rev() {
         let (motion, role) = (motion_of(path, &shape.body), SceneRole::Variant(idx + 1));
-        add(&mut scene, [name, driven], role, CarLook::Ghost, &shape, motion);
+        // Its probability, so that not the colour alone says which one it is.
+        let tag = name.split_once(": ").map_or(driven, |(chance, _)| chance);
+        add(&mut scene, [name, tag], role, CarLook::Ghost, &shape, motion);
     }
     if let Some((name, path)) = input.followed {
         let motion = motion_of(path, &shape.body);
