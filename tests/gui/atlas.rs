@@ -235,3 +235,45 @@ fn what_moves_an_outcome_is_told_or_why_it_is_not() {
     harness.run_steps(3);
     assert!(harness.query_all_by_label_contains("has no Sobol indices").next().is_some());
 }
+
+/// That the case lay outside was said, and neither by how much nor what to do.
+#[test]
+fn a_case_outside_says_by_how_much_and_what_can_be_done() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = opened(folder.path());
+    harness.run_steps(4);
+    let says = |harness: &Harness<'_, App>, text: &str| {
+        harness.query_all_by_label_contains(text).next().is_some()
+    };
+    let click = |harness: &mut Harness<'_, App>, label: &str| {
+        harness.get_by_label(label).scroll_to_me();
+        harness.run_steps(4);
+        harness.get_by_label(label).click();
+        harness.run_steps(4);
+    };
+    assert!(!says(&harness, " above the atlas"));
+    click(&mut harness, "Hold the map at the case");
+    let held = &state(&harness).view.atlas.held;
+    assert_eq!(held.get("esc"), Some(&0), "{held:?}");
+
+    let change = |harness: &mut Harness<'_, App>, vx_m_s: [f64; 2], turns_away: bool| {
+        let project = &mut harness.state_mut().state_mut().project;
+        let scenario = project.scenario_mut().expect("a scenario");
+        [scenario.struck.vx_world_m_s, scenario.striking.vx_world_m_s] = vx_m_s;
+        if turns_away {
+            scenario.striking.vy_world_m_s *= -1.0;
+        }
+        harness.run_steps(4);
+    };
+    // The synthetic atlas ends at 40 m/s.
+    change(&mut harness, [50.0, 51.0], false);
+    assert!(says(&harness, "180.0 km/h, 36.00 km/h above the atlas"));
+    assert!(says(&harness, "(36.00 km/h above)"), "below the map");
+    assert!(says(&harness, "compute an atlas whose plan reaches it"));
+    save(&mut harness, "atlas-outside.png");
+    change(&mut harness, [15.0, 16.0], true);
+    assert!(!says(&harness, " above the atlas"));
+    assert!(says(&harness, "does not close in on the side"));
+    click(&mut harness, "Show the scenario");
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Case);
+}

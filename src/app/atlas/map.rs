@@ -7,11 +7,19 @@ use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_document::figure::{self, AtlasFigure, Figure, FigureElement, atlas_figure};
 use impactlab_sweep::atlas::{Atlas, Axis, CasePlace, Slice};
 
+/// What can be done where a case lies outside of an atlas.
+pub const OUTSIDE_REMEDY: &str =
+    "No cell is like it. Change it in Scenario, or compute an atlas whose plan reaches it (Sweep).";
+
 /// The case at hand as a point of an atlas.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CasePoint {
+    /// What it is called.
+    pub name: String,
     /// What it says of the inputs of the atlas; `None` if it is no PIT.
     pub place: Option<CasePlace>,
+    /// Why it has no place in an atlas; empty if it has one.
+    pub why_none: &'static str,
     /// The bin of each axis in which it lies; empty if it is no PIT.
     pub bins: Vec<Option<usize>>,
 }
@@ -27,6 +35,17 @@ pub struct MapsOf {
     pub units: UnitSystem,
     /// The case at hand.
     pub case: CasePoint,
+}
+
+/// An input of the case at hand beside the atlas.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CaseInput {
+    /// What it is.
+    pub label: String,
+    /// Its value; `None` if the case does not say it.
+    pub value: Option<String>,
+    /// By how much it is beyond what the atlas has; `None` if it is not.
+    pub beyond: Option<String>,
 }
 
 /// A map that is shown.
@@ -90,20 +109,61 @@ impl MapsOf {
 }
 
 impl AtlasSession {
+    /// Name of the case at hand, and why it has no place in any map of the atlas, if it has none.
+    pub fn case_at_hand(&self) -> Option<(&str, Option<&'static str>)> {
+        let case = &self.made_of.as_ref()?.case;
+        Some((&case.name, case.place.is_none().then_some(case.why_none)))
+    }
+
+    /// What the case at hand says of each axis of the atlas, and what else of it lies outside; nothing if it
+    /// has no place in one.
+    pub fn case_inputs(&self, atlas: &Atlas, units: UnitSystem) -> Vec<CaseInput> {
+        let place = self.made_of.as_ref().and_then(|of| of.case.place.as_ref());
+        let Some(place) = place else { return Vec::new() };
+        let outside = place.outside_inputs(atlas);
+        let of_axis = |axis: &Axis| {
+            let value = place.value(&axis.name);
+            let shown = |value: f64| match axis.locate(value).filter(|_| axis.is_choice()) {
+                Some(bin) => axis.bin_text(bin, units),
+                None => axis.quantity().shown(value, units),
+            };
+            let beyond = outside.iter().find(|input| input.label == axis.label);
+            CaseInput {
+                label: axis.label.clone(),
+                value: value.map(shown),
+                beyond: beyond.map(|input| input.beyond(units)),
+            }
+        };
+        let is_of_axis = |label: &str| atlas.axes.iter().any(|axis| axis.label == label);
+        let others = outside.iter().filter(|input| !is_of_axis(&input.label));
+        let others = others.map(|input| CaseInput {
+            label: input.label.clone(),
+            value: Some(input.value(units)),
+            beyond: Some(input.beyond(units)),
+        });
+        atlas.axes.iter().map(of_axis).chain(others).collect()
+    }
+
     /// What the map says of the case at hand, a line each.
     pub fn case_lines(&self, atlas: &Atlas, units: UnitSystem) -> Vec<String> {
         let Some(MapsOf { case, beside, .. }) = &self.made_of else { return Vec::new() };
         let Some(place) = &case.place else {
-            let why = "The case at hand is no PIT (a touch of the side behind the middle of a car that \
-                 drives the same way), so it has no place in this map.";
-            return vec![why.to_owned()];
-        };
-        let outside = place.outside(atlas, units);
-        if !outside.is_empty() {
             return vec![format!(
-                "The case at hand is outside of this map: {}.",
-                outside.join("; ")
+                "The case at hand is no PIT, so it has no place in this map: {}.",
+                case.why_none
             )];
+        };
+        let outside = place.outside_inputs(atlas);
+        if !outside.is_empty() {
+            let told =
+                outside.iter().map(|of| format!("{} ({})", of.text(units), of.beyond(units)));
+            return vec![
+                format!(
+                    "The case at hand is outside of this map: {}.",
+                    told.collect::<Vec<_>>().join("; ")
+                ),
+                OUTSIDE_REMEDY.to_owned(),
+            ];
         }
         let found = self.maps.iter().find_map(|map| {
             case.in_map(atlas, &map.choice, *beside)?;

@@ -10,7 +10,7 @@ mod view;
 mod words;
 
 pub use command::AtlasCommand;
-pub use map::ShownMap;
+pub use map::{CaseInput, OUTSIDE_REMEDY, ShownMap};
 pub use session::{AtlasSession, ReadAtlas};
 pub use variant::SHIPPED_PLAN;
 pub use view::{AtlasView, MapChoice, can_be_beside};

@@ -12,7 +12,7 @@ use impactlab_core::vehicle::VehicleParameters;
 use impactlab_study::{
     DEFAULT_STRIKING, DEFAULT_VEHICLE, MotionSource, ScenarioChoice, VehicleChoice,
 };
-use impactlab_sweep::atlas::{Atlas, Axis, place_of_case};
+use impactlab_sweep::atlas::{Atlas, Axis, place_of_case, why_no_pit};
 use impactlab_sweep::{PitInput, PitQuestion, VehiclePairIds};
 
 /// The plan of the shipped atlas, which says which cars its pairs are.
@@ -47,7 +47,11 @@ impl State {
         let struck = self.vehicle_on_road(Role::Struck);
         let place = scenario.and_then(|scenario| place_of_case(scenario, &struck));
         let bins = place.as_ref().map_or_else(Vec::new, |place| place.bins(atlas));
-        CasePoint { place, bins }
+        let why_none = match scenario {
+            Some(scenario) => why_no_pit(scenario).unwrap_or_default(),
+            None => "its scenario cannot be read",
+        };
+        CasePoint { name: self.project.impact.scenario.name(), place, why_none, bins }
     }
 
     /// A vehicle of the scenario, on its road.

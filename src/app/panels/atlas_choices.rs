@@ -2,7 +2,9 @@
 
 use egui::{ComboBox, Grid, Label, RichText, ScrollArea, Slider, Ui};
 
-use crate::app::atlas::{AtlasCommand, AtlasSession, AtlasView, MapChoice, can_be_beside};
+use crate::app::atlas::{
+    AtlasCommand, AtlasSession, AtlasView, CaseInput, MapChoice, OUTSIDE_REMEDY, can_be_beside,
+};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
@@ -38,6 +40,63 @@ pub fn atlas_choices_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.weak("Over all of its values together, or held at one of them.");
         let case = session.atlas.bins_of_case();
         held_form(ui, &mut view.atlas, (atlas, &choice, case), view.units);
+        ui.add_space(looks::PART);
+        case_ui(ui, &session.atlas, (&mut view.atlas, atlas), view.units, commands);
+    });
+}
+
+/// Draws where the case at hand lies, input by input, and what can be done where that is outside.
+fn case_ui(
+    ui: &mut Ui,
+    session: &AtlasSession,
+    (view, atlas): (&mut AtlasView, &Atlas),
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    let Some((name, why_none)) = session.case_at_hand() else { return };
+    ui.strong("The case at hand");
+    ui.add(Label::new(RichText::new(format!("{name}, in Scenario")).weak()).wrap());
+    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let wrapped = |ui: &mut Ui, text: RichText| drop(ui.add(Label::new(text).wrap()));
+    let inputs = session.case_inputs(atlas, units);
+    if let Some(why) = why_none {
+        let text = format!("No PIT, so that it has no place in this atlas: {why}.");
+        wrapped(ui, RichText::new(text).color(warning));
+    }
+    Grid::new("case in the atlas").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
+        for CaseInput { label, value, beyond } in &inputs {
+            ui.add(Label::new(label).wrap());
+            within_view(ui, |ui| {
+                let value = value.as_deref().unwrap_or("not said");
+                match beyond {
+                    Some(beyond) => {
+                        let text = format!("{value}, {beyond} the atlas");
+                        wrapped(ui, RichText::new(text).color(warning));
+                    }
+                    None => wrapped(ui, RichText::new(value)),
+                }
+            });
+            ui.end_row();
+        }
+    });
+    let is_outside = inputs.iter().any(|input| input.beyond.is_some());
+    if is_outside {
+        ui.add(Label::new(OUTSIDE_REMEDY).wrap());
+    }
+    ui.horizontal_wrapped(|ui| {
+        let hint = "Hold every input where the case has it";
+        let hold = egui::Button::new("Hold the map at the case");
+        let hold = ui.add_enabled(!is_outside && why_none.is_none(), hold).on_hover_text(hint);
+        if hold.on_disabled_hover_text("The case lies in none of its cells").clicked() {
+            for (axis, bin) in atlas.axes.iter().zip(session.bins_of_case()) {
+                if bin.is_some() {
+                    view.hold(&axis.name, *bin);
+                }
+            }
+        }
+        if ui.button("Show the scenario").on_hover_text("Where the case is changed").clicked() {
+            commands.push(Command::Show(Pane::Scenario));
+        }
     });
 }
 

@@ -13,7 +13,7 @@ use impactlab_draw::FigureOptions;
 use impactlab_sweep::atlas::Atlas;
 
 /// Height of the lines below the maps, points.
-const READOUT_HEIGHT: f32 = 96.0;
+const READOUT_HEIGHT: f32 = 112.0;
 /// Width of the text of the empty pane, points.
 const TEXT_WIDTH: f32 = 560.0;
 
@@ -55,7 +55,8 @@ pub fn atlas_map_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     readout_ui(ui, &session.atlas, atlas, pointed, view.units);
 }
 
-/// Draws what the cell under the pointer says; without one, what that of the case at hand says.
+/// Draws what the case at hand says, and below that what the cell under the pointer says: what is told of the
+/// case stays while the pointer moves.
 fn readout_ui(
     ui: &mut Ui,
     session: &AtlasSession,
@@ -63,15 +64,21 @@ fn readout_ui(
     pointed: Option<Pointed<'_>>,
     units: UnitSystem,
 ) {
-    let lines: Vec<String> = match pointed {
-        Some((map, bins)) => vec![map.place_text(bins, units), map.text(bins, units)],
-        None => session.case_lines(atlas, units),
-    };
-    for line in lines {
+    for line in session.case_lines(atlas, units) {
         ui.add(Label::new(line).wrap());
     }
-    let hint = "A click on a cell makes a new variant of its values, computes and plays it.";
-    ui.add(Label::new(RichText::new(hint).weak()).wrap());
+    match pointed {
+        Some((map, bins)) => {
+            for line in [map.place_text(bins, units), map.text(bins, units)] {
+                ui.add(Label::new(line).wrap());
+            }
+        }
+        None => {
+            let hint =
+                "A click on a cell makes a new variant of its values, computes and plays it.";
+            ui.add(Label::new(RichText::new(hint).weak()).wrap());
+        }
+    }
 }
 
 /// Draws what an atlas is and how to get one.

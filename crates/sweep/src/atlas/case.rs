@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_3;
 
 use crate::PitInput;
-use crate::atlas::Atlas;
+use crate::atlas::{Atlas, Axis};
 use impactlab_core::collision::Scenario;
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::units::{Phrase, Quantity, UnitSystem};
@@ -28,33 +28,110 @@ pub struct CasePlace {
     pub turns_in: bool,
 }
 
+/// An input of a case that lies outside of an atlas.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutsideInput {
+    /// What it is.
+    pub label: String,
+    quantity: Quantity,
+    /// In SI units.
+    value: f64,
+    /// What the atlas has, in SI units.
+    ends: [f64; 2],
+}
+
+impl OutsideInput {
+    /// What it is, and what the atlas has.
+    pub fn text(&self, units: UnitSystem) -> String {
+        let [low, high] = self.ends.map(|end| self.quantity.shown(end, units));
+        format!("{}: {}, the map has {low} to {high}", self.label, self.value(units))
+    }
+
+    /// Its value.
+    pub fn value(&self, units: UnitSystem) -> String {
+        self.quantity.shown(self.value, units)
+    }
+
+    /// By how much it lies beyond the nearer end, such as `5.000 km/h above`.
+    pub fn beyond(&self, units: UnitSystem) -> String {
+        let [low, high] = self.ends;
+        match self.value < low {
+            true => format!("{} below", self.quantity.shown(low - self.value, units)),
+            false => format!("{} above", self.quantity.shown(self.value - high, units)),
+        }
+    }
+}
+
+/// How the vehicles of a scenario meet, seen from the struck one. The striking one comes from the right and
+/// turns to the left.
+struct Meeting {
+    /// The contact along the struck vehicle, from its CG, m.
+    x_m: f64,
+    is_side: bool,
+    /// Speeds along the struck vehicle: its own and that of the striking one, m/s.
+    along_m_s: [f64; 2],
+    /// Speed of the striking vehicle towards its side, m/s.
+    closing_m_s: f64,
+    angle_rad: f64,
+}
+
+impl Meeting {
+    /// How they meet; `None` if they do not.
+    fn from_scenario(scenario: &Scenario) -> Option<Self> {
+        let geometry = scenario.geometry().ok()?;
+        let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
+        // The bumper is touched further in than the sides.
+        let is_side = y_m.abs() > 0.4 * scenario.struck.footprint().width_m;
+        // The striking car comes from the right to the right side and turns to the left.
+        let side = -y_m.signum();
+        let (sin, cos) = scenario.struck.heading_rad.sin_cos();
+        let in_lane = |x: f64, y: f64| [x * cos + y * sin, side * (y * cos - x * sin)];
+        let [speed, _] = in_lane(scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s);
+        let [along, closing_m_s] =
+            in_lane(scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s);
+        let between_rad =
+            wrap_angle_rad(scenario.striking.heading_rad - scenario.struck.heading_rad);
+        let angle_rad = side * between_rad;
+        Some(Self { x_m, is_side, along_m_s: [speed, along], closing_m_s, angle_rad })
+    }
+
+    /// What of it is not as in a PIT; `None` if it is one.
+    fn obstacle(&self) -> Option<&'static str> {
+        let [speed, along] = self.along_m_s;
+        let obstacles = [
+            (!self.is_side, "the contact is at an end of the struck car, and not at its side"),
+            (self.x_m >= 0.0, "the contact is not behind the middle of the struck car"),
+            (speed <= 0.0, "the struck car does not drive ahead"),
+            (along <= 0.0, "the striking car does not drive the same way"),
+            (
+                self.closing_m_s <= 0.0,
+                "the striking car does not close in on the side of the other",
+            ),
+            (
+                !(0.0..=MOST_ANGLE_RAD).contains(&self.angle_rad),
+                "the striking car does not point towards the other at up to 60°",
+            ),
+        ];
+        obstacles.into_iter().find_map(|(is_so, what)| is_so.then_some(what))
+    }
+}
+
+/// Why a scenario has no place in the atlas of the PIT manoeuvre; `None` if it has one.
+pub fn why_no_pit(scenario: &Scenario) -> Option<&'static str> {
+    match Meeting::from_scenario(scenario) {
+        Some(meeting) => meeting.obstacle(),
+        None => Some("the vehicles do not meet"),
+    }
+}
+
 /// The inputs of a case; `None` if it is no PIT: a touch of the side behind the CG of the struck car by
 /// one that drives the same way at up to 60° to it and closes in.
 ///
 /// - `struck`: the struck car, on its road.
 pub fn place_of_case(scenario: &Scenario, struck: &VehicleParameters) -> Option<CasePlace> {
-    let geometry = scenario.geometry().ok()?;
-    let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
-    let outline = scenario.struck.footprint();
-    // The bumper is touched further in than the sides.
-    let is_side = y_m.abs() > 0.4 * outline.width_m;
-    // The striking car comes from the right to the right side and turns to the left.
-    let side = -y_m.signum();
-    let (sin, cos) = scenario.struck.heading_rad.sin_cos();
-    let in_lane = |x: f64, y: f64| [x * cos + y * sin, side * (y * cos - x * sin)];
-    let [speed, _] = in_lane(scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s);
-    let [along, closing] = in_lane(scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s);
-    let between_rad = wrap_angle_rad(scenario.striking.heading_rad - scenario.struck.heading_rad);
-    let angle_rad = side * between_rad;
-    let is_pit = is_side
-        && x_m < 0.0
-        && speed > 0.0
-        && along > 0.0
-        && closing > 0.0
-        && (0.0..=MOST_ANGLE_RAD).contains(&angle_rad);
-    if !is_pit {
-        return None;
-    }
+    let meeting =
+        Meeting::from_scenario(scenario).filter(|meeting| meeting.obstacle().is_none())?;
+    let Meeting { x_m, along_m_s: [speed, along], closing_m_s: closing, angle_rad, .. } = meeting;
     let ending = scenario.ending.clone().unwrap_or_default();
     let mut values = vec![
         (PitInput::TargetSpeed, speed),
@@ -116,37 +193,39 @@ impl CasePlace {
 
     /// What of the case lies outside of the map, a phrase each; empty if nothing does.
     pub fn outside(&self, atlas: &Atlas, units: UnitSystem) -> Vec<String> {
-        let shown = |quantity: Quantity, value: f64| quantity.shown(value, units);
-        let mut outside = Vec::new();
-        for axis in &atlas.axes {
-            let Some(value) = self.value(&axis.name) else { continue };
-            let (Some(low), Some(high)) = (axis.edges.first(), axis.edges.last()) else { continue };
-            if axis.locate(value).is_none() {
-                let quantity = axis.quantity();
-                let [value, low, high] = [value, *low, *high].map(|it| shown(quantity, it));
-                outside.push(format!("{}: {value}, the map has {low} to {high}", axis.label));
-            }
-        }
-        let mut check = |what: &str, quantity: Quantity, value: f64, [low, high]: [f64; 2]| {
-            if !(low..=high).contains(&value) {
-                let [value, low, high] = [value, low, high].map(|it| shown(quantity, it));
-                outside.push(format!("{what}: {value}, the map has {low} to {high}"));
-            }
+        self.outside_inputs(atlas).iter().map(|input| input.text(units)).collect()
+    }
+
+    /// The inputs that lie outside of the map: those of its axes, and what its cells are averaged over.
+    pub fn outside_inputs(&self, atlas: &Atlas) -> Vec<OutsideInput> {
+        let of_axis = |axis: &Axis| {
+            let value = self.value(&axis.name)?;
+            let ends = [*axis.edges.first()?, *axis.edges.last()?];
+            let (label, quantity) = (axis.label.clone(), axis.quantity());
+            let is_outside = axis.locate(value).is_none();
+            is_outside.then_some(OutsideInput { label, quantity, value, ends })
         };
         let [struck, striking] = self.masses_kg;
-        check("Mass of the struck car", Quantity::Mass, struck, MASSES_KG);
-        check("Mass of the striking car", Quantity::Mass, striking, MASSES_KG);
-        if let Some(faster) = self.value(PitInput::Faster.name()) {
-            check("Speed above that of the struck car", Quantity::Speed, faster, FASTER_M_S);
-        }
-        outside
+        let faster = self.value(PitInput::Faster.name());
+        let averaged = [
+            ("Mass of the struck car", Quantity::Mass, Some(struck), MASSES_KG),
+            ("Mass of the striking car", Quantity::Mass, Some(striking), MASSES_KG),
+            ("Speed above that of the struck car", Quantity::Speed, faster, FASTER_M_S),
+        ];
+        let of_averaged =
+            |(label, quantity, value, ends): (&str, Quantity, Option<f64>, [f64; 2])| {
+                let (label, value) = (label.to_owned(), value?);
+                let is_outside = !(ends[0]..=ends[1]).contains(&value);
+                is_outside.then_some(OutsideInput { label, quantity, value, ends })
+            };
+        let axes = atlas.axes.iter().filter_map(of_axis);
+        axes.chain(averaged.into_iter().filter_map(of_averaged)).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::atlas::Axis;
     use impactlab_core::vehicle::{Countersteer, PitDriver, Preset, built_in_vehicle};
 
     #[test]
@@ -186,9 +265,11 @@ mod tests {
         for ((input, value), (_, other)) in place.values.iter().zip(&other.values) {
             assert!((value - other).abs() < 1e-9, "{input:?}: {value} {other}");
         }
+        assert_eq!(why_no_pit(&scenario), None);
         let mut away = scenario.clone();
         away.striking.vy_world_m_s *= -1.0;
         assert_eq!(place_of_case(&away, &struck), None);
+        assert!(why_no_pit(&away).is_some_and(|why| why.contains("does not close in")));
         let mut standing = scenario.clone();
         standing.struck.vx_world_m_s = 0.0;
         assert_eq!(place_of_case(&standing, &struck), None);
@@ -197,6 +278,21 @@ mod tests {
         countersteers.ending = Some(ending);
         let place = place_of_case(&countersteers, &struck).unwrap();
         assert_eq!(place.value(PitInput::Driver.name()), Some(1.0));
+    }
+
+    /// It was said what the map has, and not how far off the case is.
+    #[test]
+    fn an_input_outside_says_by_how_much() {
+        let input = |value| OutsideInput {
+            label: "Speed of the struck car".to_owned(),
+            quantity: Quantity::Speed,
+            value,
+            ends: [20.0, 30.0],
+        };
+        assert_eq!(input(15.0).beyond(UnitSystem::Si), "18.00 km/h below");
+        assert_eq!(input(35.0).beyond(UnitSystem::Si), "18.00 km/h above");
+        let text = "Speed of the struck car: 54.00 km/h, the map has 72.00 km/h to 108.0 km/h";
+        assert_eq!(input(15.0).text(UnitSystem::Si), text);
     }
 
     /// What the cells are averaged over is what the shipped plans say, and their pairs are the labels.

@@ -36,7 +36,7 @@ mod sensitivity;
 mod case;
 
 pub use axis::{Axis, AxisError};
-pub use case::{CasePlace, place_of_case};
+pub use case::{CasePlace, OutsideInput, place_of_case, why_no_pit};
 pub use cell::{Cell, Corridor, MIN_ROWS, Measure, Quantile, SliceCell};
 pub use error::AtlasError;
 pub use file_error::AtlasFileError;
