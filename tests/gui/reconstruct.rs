@@ -208,6 +208,34 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert!(!is_outdated(&harness));
 }
 
+/// What the evidence lacked, and how far a run was, stood above the cards, which moved while one typed.
+#[test]
+fn the_cards_stay_where_they_are_while_they_are_filled_in_and_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = opened(&evidence_in(folder.path()), [1280.0, 720.0], 800);
+    let place = |harness: &Harness<'_, App>| harness.get_by_label("Add evidence").rect();
+    let before = place(&harness);
+    for x_m in [None, Some(35.0)] {
+        let mut changed = evidence(&harness);
+        changed.rest.as_mut().expect("a place of rest").x_m = x_m;
+        let project = &mut harness.state_mut().state_mut().project;
+        project.reconstruct.as_mut().expect("evidence").evidence =
+            EvidenceChoice::Inline(Box::new(changed));
+        harness.run_steps(4);
+        assert_eq!(evidence(&harness).missing().is_some(), x_m.is_none());
+        let says = harness.query_by_label_contains("has not been placed").is_some();
+        assert_eq!(says, x_m.is_none());
+        assert_eq!(place(&harness), before, "{x_m:?}");
+    }
+    run(&mut harness);
+    assert_eq!(place(&harness), before, "a run");
+    harness.get_by_label("Cancel").click();
+    step_until(&mut harness, "the end of the run", |state| {
+        !state.session.reconstruction.run.is_running()
+    });
+    assert_eq!(place(&harness), before, "after it");
+}
+
 #[test]
 fn a_run_that_is_cancelled_gives_no_speeds() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -1,6 +1,6 @@
 //! The “Scenario” pane: the form of a collision of two vehicles, with its momentum solution.
 
-use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
+use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -12,14 +12,14 @@ use crate::app::project::{Beside, Project};
 use crate::app::state::{Session, Subject};
 use crate::app::vehicles::{ChosenVehicles, vehicle_title};
 use crate::app::widgets::{
-    EmptyField, caveats_ui, facts_ui, optional_quantity, quantity_field, quantity_value,
+    EmptyField, caveats_ui, facts_ui, optional_quantity, problem_line_ui, quantity_field,
+    quantity_value,
 };
 use impactlab_core::collision::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Role, Scenario,
     ScenarioContact, ScenarioSkid, ScenarioVehicle, SharedNumber, Side,
     default_restitution_in_words,
 };
-use impactlab_core::data::Severity;
 use impactlab_core::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
@@ -30,7 +30,6 @@ use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_core::vehicle::{
     BuiltInVehicle, FixedObject, ROAD_FRICTION_SPREAD, RoadSlope, VehicleParameters,
 };
-use impactlab_draw::theme;
 use impactlab_study::DEFAULT_VEHICLE;
 use impactlab_study::analysis::PulseSetup;
 
@@ -62,10 +61,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             scenario_plan_ui(ui, scenario, solved, view.units, session.fit_plots, commands);
         }
         // The line is always there, so that the fields do not move while numbers are entered.
-        let problem = answer.and_then(|answer| answer.as_ref().err());
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-        let text = RichText::new(problem.map_or("", String::as_str)).color(color);
-        ui.add(egui::Label::new(text).truncate());
+        problem_line_ui(ui, answer.and_then(|answer| answer.as_ref().err()).map(String::as_str));
         let mut pulse = *project.pulse_mut();
         let Project { impact, beside, .. } = &mut **project;
         if let Some(scenario) = impact.scenario.inline_mut() {

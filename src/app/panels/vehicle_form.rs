@@ -6,13 +6,11 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::output::Output;
 use crate::app::panels::crush_form::crush_form_ui;
-use crate::app::widgets::quantity_value;
-use impactlab_core::data::Severity;
+use crate::app::widgets::{problem_line_ui, quantity_value};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::{self, NumberFormat, UnitSystem};
 use impactlab_core::vehicle::sheet::{Drive, Estimate};
 use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass};
-use impactlab_draw::theme;
 
 /// Largest width of a label and of a value, points.
 const LABEL_WIDTH: f32 = 165.0;
@@ -39,10 +37,10 @@ pub fn vehicle_form_ui(
                 commands.push(Command::Ask(Purpose::Save(Output::Vehicle(Box::new(sheet.clone())))));
             }
         });
-        if let Err(error) = sheet.checked_vehicle() {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-            ui.colored_label(color, format!("These values do not go together: {error}"));
-        }
+        // The line is always there, so that the fields do not move while numbers are entered.
+        let problem = sheet.checked_vehicle().err();
+        let problem = problem.map(|error| format!("These values do not go together: {error}"));
+        problem_line_ui(ui, problem.as_deref());
         Grid::new((title, "head")).num_columns(2).show(ui, |ui| head_ui(ui, title, sheet));
         let estimates = sheet.estimates();
         let grid = Grid::new((title, "quantities")).num_columns(2).striped(true);

@@ -9,6 +9,7 @@ mod facts;
 mod figure_frame;
 mod number;
 mod quantity;
+mod refusal;
 mod time_figure;
 mod vehicle_picker;
 mod written;
@@ -24,6 +25,7 @@ pub use quantity::{
     EmptyField, SliderRange, count_field, duration_text, optional_quantity, quantity_field,
     quantity_slider, quantity_value, seed_field, value_row, value_ui, within_view,
 };
+pub use refusal::problem_line_ui;
 pub use time_figure::{BetweenCursors, time_figure};
 pub use vehicle_picker::{VehiclePicker, vehicle_label, vehicle_name};
 pub use written::{config_field, written_field};

@@ -3,11 +3,10 @@
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
-use egui::{Response, RichText, Ui};
+use egui::{Event, Key, Response, Ui};
 
-use impactlab_core::data::Severity;
+use crate::app::widgets::refusal::{refusal_color, refusal_ui};
 use impactlab_core::units::{Quantity, Unit, significant};
-use impactlab_draw::theme;
 
 /// A number as a control shows it, in the unit in which it is shown and typed.
 pub(super) struct Number<'a> {
@@ -58,6 +57,8 @@ struct Refused {
     why: String,
     /// The value that stays in its place.
     stays: Option<f64>,
+    /// The frame in which it was typed, until the user does something else.
+    new_since: Option<u64>,
 }
 
 /// What a field without a number said when its text was selected.
@@ -116,7 +117,9 @@ impl Number<'_> {
     }
 }
 
-/// Draws a control for a number.
+/// Draws a control for a number. What was typed and is not possible stays in it with a mark; why, is said over
+/// what stands below, until the user goes on and whenever the field has the focus or the pointer. Escape brings
+/// the value back.
 ///
 /// - `control`: draws it;
 /// - returns the response of the control, and what the user did with it in this frame.
@@ -127,7 +130,16 @@ pub(super) fn number_ui(
 ) -> (Response, Edit) {
     let id = ui.next_auto_id().with("refused");
     let refused = ui.data(|data| data.get_temp::<Refused>(id));
-    let refused = refused.filter(|refused| refused.stays == number.value);
+    let mut refused = refused.filter(|refused| refused.stays == number.value);
+    let frame = ui.ctx().cumulative_frame_nr();
+    if let Some(of) = &mut refused
+        && of.new_since.is_some_and(|since| since != frame)
+        && goes_on(ui)
+    {
+        of.new_since = None;
+        ui.data_mut(|data| data.insert_temp(id, of.clone()));
+    }
+    let refused = refused;
     // Another field may change what this one says while its text is selected: keys would leave the end of it.
     let held_id = id.with("held");
     let held = ui.data(|data| data.get_temp::<Held>(held_id));
@@ -161,20 +173,22 @@ pub(super) fn number_ui(
     let suffix = if is_plain { String::new() } else { format!(" {}", number.unit.symbol) };
     let mut shown = start;
     let response = ui.vertical(|ui| {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
         let response = ui.scope(|ui| {
             if refused.is_some() {
-                ui.visuals_mut().override_text_color = Some(color);
+                ui.visuals_mut().override_text_color = Some(refusal_color(ui));
             }
             control(ui, Editing { value: &mut shown, suffix, parse: &parse, format: &format })
         });
-        if let Some(Refused { why, .. }) = &refused {
-            let why = format!("not possible, {} stays; {why}", number.in_words());
-            ui.label(RichText::new(why).color(color).small());
-        }
-        response.inner
+        let response = response.inner;
+        let Some(Refused { why, new_since, .. }) = &refused else { return response };
+        let why = format!("not possible, {} stays; {why}", number.in_words());
+        let is_open = new_since.is_some() || response.has_focus();
+        refusal_ui(ui, response, &why, is_open)
     });
     let response = response.inner;
+    let is_left = refused.is_some()
+        && response.lost_focus()
+        && ui.input(|input| input.key_pressed(Key::Escape));
     match empty {
         Some((text, start)) if number.value.is_none() && response.has_focus() => {
             let held = Held { text: text.to_owned(), start };
@@ -185,8 +199,9 @@ pub(super) fn number_ui(
     let forget = |ui: &Ui| ui.data_mut(|data| data.remove::<Refused>(id));
     let edit = match typed.into_inner() {
         Typed::Refused { text, why } => {
-            let stays = number.value;
-            ui.data_mut(|data| data.insert_temp(id, Refused { text, why, stays }));
+            let (stays, new_since) = (number.value, Some(frame));
+            ui.data_mut(|data| data.insert_temp(id, Refused { text, why, stays, new_since }));
+            ui.ctx().request_repaint();
             Edit::None
         }
         Typed::Cleared => {
@@ -197,6 +212,10 @@ pub(super) fn number_ui(
             forget(ui);
             if number.value == Some(value) { Edit::None } else { Edit::Value(value) }
         }
+        Typed::Nothing if is_left => {
+            forget(ui);
+            Edit::None
+        }
         Typed::Nothing if response.changed() => {
             forget(ui);
             let value = if number.is_whole { shown.round() } else { shown };
@@ -205,4 +224,17 @@ pub(super) fn number_ui(
         Typed::Nothing => Edit::None,
     };
     (response, edit)
+}
+
+/// Whether the user does something in this frame: what was said of what was typed before has been seen.
+fn goes_on(ui: &Ui) -> bool {
+    let is_begun = |event: &Event| {
+        matches!(
+            event,
+            Event::Key { pressed: true, .. }
+                | Event::PointerButton { pressed: true, .. }
+                | Event::Text(_)
+        )
+    };
+    ui.input(|input| input.events.iter().any(is_begun))
 }

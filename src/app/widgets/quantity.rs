@@ -317,6 +317,44 @@ mod tests {
         assert!(harness.query_by_label_contains("not possible").is_none());
     }
 
+    /// Why a number was not taken stood below it, and moved every field that follows.
+    #[test]
+    fn a_number_that_is_not_taken_moves_nothing_and_escape_brings_the_value_back() {
+        let mut harness = Harness::new_ui_state(
+            |ui, mass_kg: &mut f64| {
+                Grid::new("grid").num_columns(2).show(ui, |ui| {
+                    quantity_field(ui, "Mass", mass_kg, &BODY_MASS, UnitSystem::Si);
+                });
+                ui.label("below");
+            },
+            1500.0,
+        );
+        harness.run();
+        let place = |harness: &Harness<'_, f64>| harness.get_by_label("below").rect();
+        let before = place(&harness);
+        harness.key_press(Key::Tab);
+        harness.run();
+        harness.event(Event::Text("-3".to_owned()));
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+        assert!(harness.query_by_label_contains("not possible").is_some());
+        assert_eq!(place(&harness), before);
+        // It is said again whenever the field is looked at, and not while another thing is done.
+        harness.event(Event::Text("x".to_owned()));
+        harness.run();
+        assert!(harness.query_by_label_contains("not possible").is_none());
+        harness.key_press(Key::Tab);
+        harness.run();
+        assert!(harness.query_by_label_contains("not possible").is_some());
+        harness.key_press(Key::Escape);
+        harness.run();
+        harness.key_press(Key::Tab);
+        harness.run();
+        assert!(harness.query_by_label_contains("not possible").is_none());
+        assert_eq!(*harness.state(), 1500.0);
+    }
+
     /// The end of the longer text stood behind what was typed.
     #[test]
     fn what_is_usual_may_change_while_a_field_is_selected() {

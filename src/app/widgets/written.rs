@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Response, TextEdit, Ui};
 
-use impactlab_core::data::Severity;
-use impactlab_draw::theme;
+use crate::app::widgets::refusal::{refusal_color, refusal_ui};
 use impactlab_study::ConfigChoice;
 
 /// What was typed, and the value in its place as it is written.
@@ -16,7 +15,7 @@ struct Typed {
 }
 
 /// Draws a text field for a value. What is typed stays in the field until the value changes elsewhere. A
-/// text that cannot be read is not taken, and the field says why.
+/// text that cannot be read is not taken, and the field says why, over what stands below it.
 ///
 /// - `write`, `read`: the value as a text, and the value of a text or what is wrong with it;
 /// - `look`: completes the field;
@@ -32,7 +31,8 @@ pub fn written_field<T>(
     let written = write(value);
     let typed = ui.data(|data| data.get_temp::<Typed>(id)).filter(|typed| typed.value == written);
     let mut text = typed.map_or(written, |typed| typed.text);
-    let response = ui.add(look(TextEdit::singleline(&mut text)));
+    let color = read(&text).is_err().then(|| refusal_color(ui));
+    let response = ui.add(look(TextEdit::singleline(&mut text).text_color_opt(color)));
     let taken = read(&text);
     let problem = taken.as_ref().err().cloned();
     if response.changed() {
@@ -42,10 +42,15 @@ pub fn written_field<T>(
         let value = write(value);
         ui.data_mut(|data| data.insert_temp(id, Typed { text, value }));
     }
-    if let Some(problem) = &problem {
-        ui.colored_label(theme::severity_color(Severity::Error, ui.visuals().dark_mode), problem);
-    }
-    (response, problem.is_none())
+    let is_taken = problem.is_none();
+    let response = match problem {
+        Some(problem) => {
+            let is_open = response.has_focus();
+            refusal_ui(ui, response, &problem, is_open)
+        }
+        None => response,
+    };
+    (response, is_taken)
 }
 
 /// Draws a text field for the path of a settings file, which may be left empty.

@@ -1,6 +1,6 @@
 //! The “Evidence” pane: what was found, what is taken to be likely beforehand, and the run.
 
-use egui::{ProgressBar, ScrollArea, TextEdit, Ui};
+use egui::{ProgressBar, ScrollArea, TextEdit, TextStyle, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -8,8 +8,8 @@ use crate::app::ground::GroundCommand;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::output::Output;
 use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
-use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
+use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panes::{Pane, PaneContext};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
 use crate::app::widgets::{count_field, duration_text, seed_field};
@@ -17,6 +17,9 @@ use impactlab_core::data::Severity;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evidence::Evidence;
 use impactlab_study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
+
+/// Lines of text for which there is room below the button that starts a run.
+const STATUS_LINES: f32 = 3.0;
 
 /// Draws the run, the cards of the evidence, and the ranges before and after it.
 pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -126,9 +129,16 @@ fn case_ui(
                 .push(Command::Ask(Purpose::Save(Output::Evidence(Box::new(evidence.clone())))));
         }
     });
-    if let EvidenceChoice::File(path) = &request.evidence {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        ui.weak(format!("as in {name}")).on_hover_text(path.display().to_string());
+    // The line is always there, so that the cards do not move when the first of them is edited.
+    match &request.evidence {
+        EvidenceChoice::File(path) => {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            ui.weak(format!("as in {name}")).on_hover_text(path.display().to_string());
+        }
+        EvidenceChoice::Inline(_) => {
+            let hint = "Save as… writes a file of it";
+            ui.weak("entered here, kept in the case").on_hover_text(hint);
+        }
     }
     if let Some(site) = &request.site {
         let name = site.file_name().unwrap_or_default().to_string_lossy();
@@ -180,32 +190,57 @@ fn run_ui(
             command(ReconstructionCommand::Run);
         }
     });
-    if let Some(lacks) = lacks {
-        notice_ui(ui, Severity::Warning, &lacks);
-    }
-    if let Some(job) = session.run.job() {
-        ui.horizontal(|ui| {
-            let is_cancelled = job.is_cancelled();
-            let hint = "It gives no speeds before all of the evidence is used; Run goes on from what was \
-                        sampled";
-            let button = ui.add_enabled(!is_cancelled, egui::Button::new("Cancel"));
-            if button.on_hover_text(hint).clicked() {
-                command(ReconstructionCommand::Cancel);
+    // The room is always there, so that the cards do not move while they are filled in and while it runs.
+    let line = ui.text_style_height(&TextStyle::Body) + ui.spacing().item_spacing.y;
+    ui.allocate_ui(vec2(ui.available_width(), STATUS_LINES * line), |ui| {
+        ui.set_min_height(STATUS_LINES * line);
+        let is_outdated = session.is_outdated(Some(&*request));
+        let (severity, state) = match (lacks.as_deref(), session.run.problem(), session.answer()) {
+            (Some(lacks), ..) => (Severity::Warning, lacks.to_owned()),
+            // Why other evidence gave no speeds says nothing of this.
+            (None, Some(problem), _) if !is_outdated => {
+                (Severity::Error, format!("Not reconstructed: {problem}"))
             }
-            let progress = job.progress();
-            let left = session.time_left().map(duration_text).filter(|_| !is_cancelled);
-            let left = left.map_or(String::new(), |left| format!(", about {left} left"));
-            let text = match is_cancelled {
-                true => "ending".to_owned(),
-                false => format!("{}{left}", progress.message),
-            };
-            match progress.fraction() {
-                Some(fraction) => drop(ui.add(ProgressBar::new(fraction).text(text))),
-                None => drop((ui.spinner(), ui.add(egui::Label::new(text).truncate()))),
+            (None, _, Some(_)) if is_outdated => (Severity::Warning, OUTDATED.to_owned()),
+            (None, _, Some(_)) => {
+                (Severity::Info, "The speeds are those of this evidence.".to_owned())
             }
-        });
-    }
-    if let Some(problem) = session.run.problem() {
-        notice_ui(ui, Severity::Error, &format!("Not reconstructed: {problem}"));
-    }
+            (None, _, None) => {
+                (Severity::Info, "Nothing is missing: Run gives the speeds.".to_owned())
+            }
+        };
+        match session.run.job() {
+            Some(_) => progress_ui(ui, session, &mut command),
+            None => notice_ui(ui, severity, &state),
+        }
+    });
+}
+
+/// Draws the progress of a run.
+fn progress_ui(
+    ui: &mut Ui,
+    session: &ReconstructionSession,
+    command: &mut impl FnMut(ReconstructionCommand),
+) {
+    let Some(job) = session.run.job() else { return };
+    ui.horizontal(|ui| {
+        let is_cancelled = job.is_cancelled();
+        let hint = "It gives no speeds before all of the evidence is used; Run goes on from what was \
+                    sampled";
+        let button = ui.add_enabled(!is_cancelled, egui::Button::new("Cancel"));
+        if button.on_hover_text(hint).clicked() {
+            command(ReconstructionCommand::Cancel);
+        }
+        let progress = job.progress();
+        let left = session.time_left().map(duration_text).filter(|_| !is_cancelled);
+        let left = left.map_or(String::new(), |left| format!(", about {left} left"));
+        let text = match is_cancelled {
+            true => "ending".to_owned(),
+            false => format!("{}{left}", progress.message),
+        };
+        match progress.fraction() {
+            Some(fraction) => drop(ui.add(ProgressBar::new(fraction).text(text))),
+            None => drop((ui.spinner(), ui.add(egui::Label::new(text).truncate()))),
+        }
+    });
 }

@@ -12,7 +12,7 @@ use crate::app::panes::PaneContext;
 use crate::app::report::{MadeReport, ReportCommand, ReportView};
 use crate::app::state::Session;
 use crate::app::tasks::TaskKey;
-use crate::app::widgets::duration_text;
+use crate::app::widgets::{duration_text, problem_line_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Language, Paper};
@@ -63,9 +63,7 @@ fn settings_ui(ui: &mut Ui, view: &mut ReportView, units: UnitSystem) {
             .on_hover_text("YYYY-MM-DD; the same case, files and date give the same bytes");
         ui.end_row();
     });
-    if let Err(why) = view.report_date() {
-        notice_ui(ui, Severity::Error, &why);
-    }
+    problem_line_ui(ui, view.report_date().err().as_deref());
     ui.checkbox(&mut view.shown_variant_only, "Only the variant that is shown")
         .on_hover_text("Otherwise the report tells of all variants of the case");
 }
