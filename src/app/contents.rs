@@ -2,6 +2,7 @@
 
 use crate::app::chain::Link;
 use crate::app::command::Command;
+use crate::app::ground::SITE;
 use crate::app::looks::Icon;
 use crate::app::model::{ModelStatus, file_name};
 use crate::app::network::TrainedModel;
@@ -87,7 +88,7 @@ impl State {
         let mut entries = Vec::new();
         entries.extend(self.vehicle_entries());
         entries.extend(self.scene_entries());
-        entries.extend(self.ground_entry());
+        entries.push(self.site_entry());
         entries.push(self.impact_entry());
         entries.extend(self.session.sources.iter().map(|source| self.source_entry(source)));
         if self.session.sources.is_empty() {
@@ -151,9 +152,12 @@ impl State {
         ]
     }
 
-    /// The ground of the scene, if there is one.
-    fn ground_entry(&self) -> Option<ContentsEntry> {
-        let file = self.project.simulate.site.as_ref()?;
+    /// The site. Without one the line leads to where it is opened.
+    fn site_entry(&self) -> ContentsEntry {
+        let Some(file) = &self.project.simulate.site else {
+            let (none, show) = ("none, lanes are not counted", Command::Show(Pane::Scenario));
+            return ContentsEntry::new(Group::Scene, SITE, none.to_owned(), show);
+        };
         let ground = &self.session.ground;
         let detail = match ground.shown() {
             Some(loaded) => loaded.site.name.clone(),
@@ -163,7 +167,7 @@ impl State {
         let missing = ground.shown().and_then(|loaded| loaded.notes.first().cloned());
         let missing = ground.problem.clone().or(missing);
         let show = Command::Show(Pane::Scene);
-        Some(ContentsEntry::new(Group::Scene, "Ground", detail, show).missing(missing))
+        ContentsEntry::new(Group::Scene, SITE, detail, show).missing(missing)
     }
 
     fn impact_entry(&self) -> ContentsEntry {

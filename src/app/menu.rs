@@ -8,6 +8,7 @@ use crate::app::case::{CaseCommand, Leaving};
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialog::Purpose;
 use crate::app::film::FilmCommand;
+use crate::app::ground::OPEN_SITE;
 use crate::app::keyboard;
 use crate::app::looks::{self, Icon, icon, icon_button};
 use crate::app::network::{Network, TrainedModel};
@@ -141,6 +142,7 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let has_response = session.response.model.current.is_some();
     let has_comparison = session.response.comparison.report().is_some();
     for (label, enabled, purpose) in [
+        (OPEN_SITE, true, Purpose::Ground),
         ("Save scenario…", true, Purpose::Save(Output::Scenario)),
         ("Open model…", true, Purpose::OpenModel),
         ("Save force model…", has_force, Purpose::Save(Output::Model(Network::Force))),
@@ -430,6 +432,6 @@ pub fn drop_hint_ui(ui: &Ui) {
         .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint")));
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(160));
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop to open: a case, a data set folder, a force or trajectory file, a scenario, a model, a comparison, an atlas, a plan";
+    let text = "Drop to open: a case, a data set folder, a force or trajectory file, a scenario, a site, a model, a comparison, an atlas, a plan";
     painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }

@@ -64,7 +64,7 @@ impl Output {
             Self::Scenario => ["Save the scenario", "scenario"],
             Self::Vehicle(_) => ["Save the vehicle", "vehicle"],
             Self::Evidence(_) => ["Save the evidence", "evidence"],
-            Self::Site => ["Save the ground", "site file"],
+            Self::Site => ["Save the site", "site file"],
             Self::Model(_) | Self::Archived(..) => ["Save the model", "model"],
             Self::Comparison => ["A folder for the comparison", "folder"],
             Self::Case => ["Save the case", "case"],

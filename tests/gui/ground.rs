@@ -59,7 +59,7 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
     assert_eq!(request.site.as_deref(), Some(Path::new(SITE)));
     let report = &state.analysis().expect("an answer").analysis;
     assert_eq!(report.friction_zones.len(), 2, "the simulation knows the zones");
-    let entry = state.contents(&state.chain()).into_iter().find(|entry| entry.label == "Ground");
+    let entry = state.contents(&state.chain()).into_iter().find(|entry| entry.label == "Site");
     assert_eq!(entry.expect("in the tree").detail, "Country road, synthetic");
     save(&mut harness, "ground-above.png");
     let with = harness.render().expect("a picture");
@@ -79,6 +79,42 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
     });
     assert!(harness.render().expect("a picture") != with);
     assert_eq!(harness.state().state().simulate_request().expect("a question").site, None);
+}
+
+/// “not counted: that takes a site with lanes” was said without a way to one.
+#[test]
+fn lanes_that_are_not_counted_lead_to_a_site_and_to_both_vehicles() {
+    let is_forecast = |state: &State| {
+        let forecast = &state.session.response.forecast;
+        is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
+    };
+    let says = |harness: &Harness<'_, App>, text: &str| {
+        harness.query_all_by_label_contains(text).next().is_some()
+    };
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_forecast);
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    harness.run_steps(4);
+    assert!(says(&harness, "not counted: that takes a site with lanes"));
+    assert!(says(&harness, "For lanes: a site.") && says(&harness, "Open site…"));
+    assert!(says(&harness, "Site: none, lanes are not counted"), "in the contents");
+    save(&mut harness, "forecast-without-site.png");
+
+    apply(&mut harness, Command::Open(vec![SITE.into()]));
+    step_until(&mut harness, "the site", |state| {
+        state.session.ground.shown().is_some() && is_forecast(state)
+    });
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    harness.run_steps(4);
+    assert!(!says(&harness, "For lanes: "));
+
+    harness.state_mut().state_mut().project.simulate.one_contact = true;
+    harness.run_steps(4);
+    step_until(&mut harness, "the forecast of one contact", is_forecast);
+    assert!(says(&harness, "For lanes: both vehicles."));
+    harness.get_by_label("Follow both vehicles").click();
+    harness.run_steps(4);
+    assert!(!harness.state().state().project.simulate.one_contact);
 }
 
 #[test]
@@ -243,7 +279,7 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     assert_eq!(n_priors(&harness), Some(without + 1));
     assert!(harness.query_by_label_contains("friction zones of site.toml").is_some());
     step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
-    harness.get_by_label("Show the ground").click();
+    harness.get_by_label("Show the site").click();
     harness.run_steps(4);
     assert!(harness.query_by_label("Picture of the scene").is_some());
     apply(&mut harness, Command::Show(Pane::Evidence));

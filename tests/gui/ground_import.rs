@@ -36,7 +36,7 @@ fn a_point_cloud_asks_how_and_becomes_a_ground() {
     apply(&mut harness, Command::Show(Pane::Scene));
     apply(&mut harness, Command::Open(vec![cloud]));
     harness.run_steps(4);
-    harness.get_by_label("Make ground").click();
+    harness.get_by_label("Make site").click();
     step_until(&mut harness, "the ground", |state| {
         state.session.ground.shown().is_some() && is_idle(state)
     });
@@ -60,7 +60,7 @@ fn a_ground_is_seen_before_anything_is_chosen_that_moves_on_it() {
     assert!(harness.query_by_label("Picture of the scene").is_none());
     apply(&mut harness, Command::Open(vec![cloud]));
     harness.run_steps(4);
-    harness.get_by_label("Make ground").click();
+    harness.get_by_label("Make site").click();
     step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
     let state = harness.state().state();
     assert!(state.project.subject().is_none(), "no case is chosen");

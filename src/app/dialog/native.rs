@@ -110,7 +110,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::OpenComparison => {
             dialog.add_filter("comparison.json", &["json"]).pick_file().await
         }
-        Purpose::Ground => dialog.add_filter("ground", &GROUNDS).pick_file().await,
+        Purpose::Ground => dialog.add_filter("site", &GROUNDS).pick_file().await,
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
         Purpose::OpenAtlas => dialog.add_filter("atlas", &[ATLAS_ENDING]).pick_file().await,
         Purpose::OpenPlan => dialog.add_filter("plan", &["toml", "json"]).pick_file().await,

@@ -31,7 +31,7 @@ impl Purpose {
         match self {
             Self::Folder => "Open a data set",
             Self::Files => "Open files",
-            Self::Ground => "Open a ground",
+            Self::Ground => "Open a site",
             Self::OpenModel => "Open a model",
             Self::OpenComparison => "Open a comparison",
             Self::OpenAtlas => "Open an atlas",

@@ -1,4 +1,4 @@
-//! The form that asks how a point cloud becomes a ground.
+//! The form that asks how a point cloud becomes a site.
 
 use egui::{ComboBox, Grid, ProgressBar, TextEdit, Ui};
 
@@ -21,7 +21,7 @@ pub fn cloud_ui(
     progress: Option<&Progress>,
     commands: &mut Vec<Command>,
 ) {
-    ui.heading("Ground of a point cloud");
+    ui.heading("Site of a point cloud");
     ui.weak(form.path.display().to_string());
     if let Some(progress) = progress {
         let bar = ProgressBar::new(progress.fraction().unwrap_or(0.0));
@@ -53,7 +53,7 @@ pub fn cloud_ui(
     ui.separator();
     ui.horizontal(|ui| {
         let is_possible = !form.folder.trim().is_empty();
-        if ui.add_enabled(is_possible, egui::Button::new("Make ground")).clicked() {
+        if ui.add_enabled(is_possible, egui::Button::new("Make site")).clicked() {
             commands.push(Command::Ground(GroundCommand::MakeOfCloud(form.clone())));
         }
         if ui.button("Cancel").clicked() {

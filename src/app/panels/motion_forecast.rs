@@ -8,6 +8,7 @@ use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::ground::{ABOUT_SITES, OPEN_SITE};
 use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::analysis_or_hint;
@@ -36,7 +37,7 @@ use impactlab_document::figure::{
 };
 use impactlab_draw::{FigureOptions, theme};
 use impactlab_study::analysis::Analysis;
-use impactlab_study::{ForceSource, PredictMotionAnswer};
+use impactlab_study::{ForceSource, MotionSource, PredictMotionAnswer, PredictMotionReport};
 
 /// What stands above the plots over time of a coarse forecast, and of a full one.
 const COARSE: &str =
@@ -81,6 +82,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 super::faded_if(ui, shown.is_late, |ui| {
                     let report = &answer.answer.report;
                     sentences_ui(ui, &report.answer_card(), view.units);
+                    lanes_ui(ui, report, project, session, commands);
                     ui.separator();
                     caveats_ui(ui, &report.caveats, view.units, commands);
                     facts_ui(ui, &report.scenario, &report.detail_tables(), view.units);
@@ -134,6 +136,39 @@ fn shown_forecast(session: &Session) -> Option<ShownForecast<'_>> {
         return Some(ShownForecast { answer, is_late, is_coarse: true });
     }
     Some(ShownForecast { answer: forecast.ok()?, is_late, is_coarse: false })
+}
+
+/// Draws what lacks for lanes to be counted in the forecast of a scenario, with the way there.
+fn lanes_ui(
+    ui: &mut Ui,
+    report: &PredictMotionReport,
+    project: &mut Project,
+    session: &Session,
+    commands: &mut Vec<Command>,
+) {
+    let is_scenario = matches!(project.simulate.source, MotionSource::Scenario { .. });
+    if !report.places.is_empty() || !is_scenario {
+        return;
+    }
+    let site = session.ground.shown().map(|loaded| &loaded.site);
+    ui.horizontal_wrapped(|ui| {
+        if report.contacts.is_none() && project.simulate.one_contact {
+            ui.weak("For lanes: both vehicles.");
+            let hint = "After the first contact, too: it takes One contact only back";
+            if ui.small_button("Follow both vehicles").on_hover_text(hint).clicked() {
+                project.simulate.one_contact = false;
+            }
+        }
+        let lack = match site {
+            None => "For lanes: a site.".to_owned(),
+            Some(site) if site.lanes.is_empty() => format!("{} has no lanes.", site.name),
+            Some(_) => return,
+        };
+        ui.weak(lack);
+        if ui.small_button(OPEN_SITE).on_hover_text(ABOUT_SITES).clicked() {
+            commands.push(Command::Ask(Purpose::Ground));
+        }
+    });
 }
 
 /// Names the current response model, describes its training on hover, and warns of a model that was

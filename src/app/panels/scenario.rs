@@ -4,6 +4,7 @@ use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
+use crate::app::ground::{ABOUT_SITES, GroundCommand, GroundSession, OPEN_SITE, REMOVE_SITE, SITE};
 use crate::app::output::Output;
 use crate::app::panels::ending::ending_form;
 use crate::app::panels::scenario_plan::scenario_plan_ui;
@@ -13,7 +14,7 @@ use crate::app::state::{Session, Subject};
 use crate::app::vehicles::{ChosenVehicles, vehicle_title};
 use crate::app::widgets::{
     EmptyField, caveats_ui, facts_ui, optional_quantity, problem_line_ui, quantity_field,
-    quantity_value,
+    quantity_value, within_view,
 };
 use impactlab_core::collision::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Role, Scenario,
@@ -68,7 +69,8 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             forms_ui(ui, scenario, &mut pulse, beside, session, view.units);
         }
         *project.pulse_mut() = pulse;
-        road_form(ui, project.road_mut(), session.chosen_vehicles.get(Role::Struck), view.units);
+        let vehicle = session.chosen_vehicles.get(Role::Struck);
+        road_form(ui, project.road_mut(), vehicle, (&session.ground, view.units), commands);
         ui.separator();
         match answer {
             Some(Ok(answer)) => {
@@ -288,14 +290,15 @@ fn stated_field(
     ui.end_row();
 }
 
-/// Draws the fields of the road.
+/// Draws the fields of the road, and the site on which it is.
 ///
 /// - `vehicle`: the struck vehicle, whose friction counts where none is said.
 fn road_form(
     ui: &mut Ui,
     [friction, sigma]: [&mut Option<f64>; 2],
     vehicle: Option<&VehicleParameters>,
-    units: UnitSystem,
+    (ground, units): (&GroundSession, UnitSystem),
+    commands: &mut Vec<Command>,
 ) {
     let default = || BuiltInVehicle::from_id(DEFAULT_VEHICLE.id()).map(|of| &of.parameters);
     let usual = vehicle.or_else(default).map_or(0.8, |of| of.tires.friction);
@@ -316,8 +319,32 @@ fn road_form(
             let hint = "How well the friction is known; it is drawn in the forecast. 0: exactly";
             field.labelled_by(name.id).on_hover_text(hint);
             ui.end_row();
+            site_row_ui(ui, ground, commands);
         });
     });
+}
+
+/// Draws a row of a two-column grid with the site and what opens and removes it.
+fn site_row_ui(ui: &mut Ui, ground: &GroundSession, commands: &mut Vec<Command>) {
+    ui.label(SITE).on_hover_text(ABOUT_SITES);
+    within_view(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            match (ground.shown(), &ground.problem) {
+                (Some(loaded), _) => drop(ui.label(&loaded.site.name)),
+                (None, Some(problem)) => drop(ui.label("not read").on_hover_text(problem)),
+                (None, None) if ground.is_loading() => drop(ui.weak("loading…")),
+                (None, None) => drop(ui.weak("none, lanes are not counted")),
+            }
+            if ui.small_button(OPEN_SITE).on_hover_text(ABOUT_SITES).clicked() {
+                commands.push(Command::Ask(Purpose::Ground));
+            }
+            let has_one = ground.shown().is_some() || ground.problem.is_some();
+            if has_one && ui.small_button(REMOVE_SITE).clicked() {
+                commands.push(Command::Ground(GroundCommand::Remove));
+            }
+        });
+    });
+    ui.end_row();
 }
 
 /// Draws the place and the speeds of a blow into a side as a driver would tell them: other names for the

@@ -1,4 +1,4 @@
-//! The ground in the “Scene” pane: its menu, and measuring on it.
+//! The site in the “Scene” pane: its menu, and measuring on it.
 
 use std::sync::Arc;
 
@@ -7,7 +7,7 @@ use egui::{DragValue, Key, Modifiers, Painter, Pos2, Response, Ui, vec2};
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::export::{SceneExport, SceneFormat};
-use crate::app::ground::{GroundCommand, GroundSession};
+use crate::app::ground::{ABOUT_SITES, GroundCommand, GroundSession, OPEN_SITE, REMOVE_SITE, SITE};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
 use crate::app::output::Output;
@@ -15,7 +15,7 @@ use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::scene::Scene;
 use impactlab_draw::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
 
-/// Draws the menu of the ground.
+/// Draws the menu of the site.
 ///
 /// - `scene`: below which it lies.
 pub fn ground_menu_ui(
@@ -24,7 +24,7 @@ pub fn ground_menu_ui(
     scene: &Scene,
     commands: &mut Vec<Command>,
 ) {
-    let menu = ui.menu_button((icon(Icon::Map), "Ground"), |ui| {
+    let menu = ui.menu_button((icon(Icon::Map), SITE), |ui| {
         let shown = ground.shown();
         match (shown, &ground.problem) {
             (Some(loaded), _) => {
@@ -41,13 +41,10 @@ pub fn ground_menu_ui(
             }
             (None, Some(problem)) => drop(ui.label(problem)),
             (None, None) if ground.is_loading() => drop(ui.weak("loading…")),
-            (None, None) => {
-                drop(ui.weak("A site file (TOML), an orthophoto, KML, GeoJSON, surveyed points or a point cloud; drop it \
-                          here as well"))
-            }
+            (None, None) => drop(ui.weak(ABOUT_SITES)),
         }
         ui.separator();
-        if ui.add(icon_button(Icon::File, "Open ground…")).clicked() {
+        if ui.add(icon_button(Icon::File, OPEN_SITE)).clicked() {
             commands.push(Command::Ask(Purpose::Ground));
         }
         ui.add_enabled_ui(shown.is_some(), |ui| {
@@ -63,12 +60,12 @@ pub fn ground_menu_ui(
             commands.push(Command::Ask(Purpose::Save(Output::Exchange(Box::new(export)))));
         }
         ui.add_enabled_ui(shown.is_some() || ground.problem.is_some(), |ui| {
-            if ui.button("Remove ground").clicked() {
+            if ui.button(REMOVE_SITE).clicked() {
                 commands.push(Command::Ground(GroundCommand::Remove));
             }
         });
     });
-    menu.response.on_hover_text("Orthophoto, lanes, drawing and zones of friction below the scene");
+    menu.response.on_hover_text(ABOUT_SITES);
 }
 
 /// Draws the menu of what is measured.

@@ -4,7 +4,7 @@ use egui::{ProgressBar, ScrollArea, TextEdit, TextStyle, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
-use crate::app::ground::GroundCommand;
+use crate::app::ground::{GroundCommand, REMOVE_SITE};
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::output::Output;
 use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
@@ -143,17 +143,17 @@ fn case_ui(
     if let Some(site) = &request.site {
         let name = site.file_name().unwrap_or_default().to_string_lossy();
         let text = format!(
-            "The wheels stand on the friction zones of {name}, the ground of this case, in the axes of the \
-             evidence. Evidence of another place belongs into a new case, or to no ground."
+            "The wheels stand on the friction zones of {name}, the site of this case, in the axes of the \
+             evidence. Evidence of another place belongs into a new case, or to no site."
         );
         notice_ui(ui, Severity::Info, &text);
         ui.horizontal_wrapped(|ui| {
             let hint = "Where it is looked at, measured, saved and taken away";
-            if ui.small_button("Show the ground").on_hover_text(hint).clicked() {
+            if ui.small_button("Show the site").on_hover_text(hint).clicked() {
                 commands.push(Command::Show(Pane::Scene));
             }
             let hint = "The wheels then stand on the friction of the evidence. Undo takes it back";
-            if ui.small_button("Take the ground away").on_hover_text(hint).clicked() {
+            if ui.small_button(REMOVE_SITE).on_hover_text(hint).clicked() {
                 commands.push(Command::Ground(GroundCommand::Remove));
             }
         });
