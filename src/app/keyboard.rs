@@ -51,11 +51,20 @@ const WORKSPACE_KEYS: [Key; Workspace::ALL.len()] =
 /// Number of steps of an arrow key in a millisecond.
 const STEPS_PER_MS: f64 = 1e-3 / TIME_STEP_S;
 
+/// What takes keys before the window does.
+#[derive(Debug, Clone, Copy)]
+pub struct KeyFocus {
+    /// Whether a dialog is open.
+    pub has_dialog: bool,
+    /// Whether something was typed into the text field that has the focus.
+    pub is_typing: bool,
+}
+
 /// Adds the commands of the keys that were pressed in this frame. While a text field has the focus,
-/// the keys without a modifier are left to it, and Space to any control that has it. While a dialog is
-/// open, all keys are left to that.
-pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>) {
-    if has_dialog {
+/// the keys without a modifier are left to it, and Space to any control that has it; once something was typed
+/// into it, undo and redo are those of the text. While a dialog is open, all keys are left to that.
+pub fn commands(context: &Context, focus: KeyFocus, commands: &mut Vec<Command>) {
+    if focus.has_dialog {
         return;
     }
     let shortcuts = [
@@ -68,6 +77,9 @@ pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>
         (SAVE, Command::Case(CaseCommand::Save)),
     ];
     for (shortcut, command) in shortcuts {
+        if focus.is_typing && matches!(command, Command::Undo | Command::Redo) {
+            continue;
+        }
         if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
             commands.push(command);
         }

@@ -22,6 +22,7 @@ mod force;
 mod found;
 mod frame_times;
 mod ground;
+mod history;
 mod import;
 mod keyboard;
 mod latest;
@@ -73,10 +74,11 @@ use std::sync::Arc;
 
 use eframe::CreationContext;
 use eframe::wgpu::DeviceType;
-use egui::util::undoer::Undoer;
 use egui::{Context, Ui, ViewportCommand};
 use egui_tiles::Tree;
 
+use crate::app::history::EditHistory;
+use crate::app::keyboard::KeyFocus;
 use crate::app::reading::ReadingRecord;
 use crate::app::state::StateText;
 use crate::app::store::{OpenedState, Store, open_state};
@@ -139,7 +141,7 @@ pub struct WindowError(String);
 /// The application: its state, the history for undo and redo, and the file that stores the state.
 pub struct App {
     state: State,
-    undoer: Undoer<Project>,
+    history: EditHistory,
     store: Option<Store>,
     /// The state as it is stored.
     state_text: StateText,
@@ -239,8 +241,8 @@ impl App {
             // What the last run asked stays, and the shipped data lie beside.
             state.session.select_when_loaded = None;
         }
-        let (undoer, state_text) = (Undoer::default(), StateText::default());
-        Self { state, undoer, store, state_text, is_storable: true }
+        let (history, state_text) = (EditHistory::default(), StateText::default());
+        Self { state, history, store, state_text, is_storable: true }
     }
 
     /// Returns the state of the application.
@@ -257,12 +259,12 @@ impl App {
     pub fn apply(&mut self, command: Command, context: &Context) {
         match command {
             Command::Undo => {
-                if let Some(project) = self.undoer.undo(&self.state.project) {
+                if let Some(project) = self.history.undo(&self.state.project) {
                     self.state.project = project.clone();
                 }
             }
             Command::Redo => {
-                if let Some(project) = self.undoer.redo(&self.state.project) {
+                if let Some(project) = self.history.redo(&self.state.project) {
                     self.state.project = project.clone();
                 }
             }
@@ -281,7 +283,11 @@ impl eframe::App for App {
         for refusal in refusals.into_iter().flatten() {
             self.state.say(Severity::Warning, scenes_on_cpu(&refusal));
         }
-        keyboard::commands(context, self.state.session.dialogs.is_any_open(), &mut commands);
+        let focus = KeyFocus {
+            has_dialog: self.state.session.dialogs.is_any_open(),
+            is_typing: self.history.is_typing(context),
+        };
+        keyboard::commands(context, focus, &mut commands);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.into_iter().map(|file| file.path().to_owned()).collect();
         if !paths.is_empty() {
@@ -292,10 +298,9 @@ impl eframe::App for App {
         }
         self.ask_before_closing(context);
         if std::mem::take(&mut self.state.session.history_ends) {
-            self.undoer = Undoer::default();
+            self.history.clear();
         }
-        let now = context.input(|input| input.time);
-        self.undoer.feed_state(now, &self.state.project);
+        self.history.feed(context, &self.state.project);
         self.keep_state(context);
     }
 
@@ -307,8 +312,8 @@ impl eframe::App for App {
         }
         let mut commands = Vec::new();
         let history = menu::History {
-            can_undo: self.undoer.has_undo(&self.state.project),
-            can_redo: self.undoer.has_redo(&self.state.project),
+            can_undo: self.history.has_undo(&self.state.project),
+            can_redo: self.history.has_redo(&self.state.project),
         };
         menu::menu_ui(ui, &mut self.state, history, &mut commands);
         case::case_bar_ui(ui, &mut self.state, &mut commands);

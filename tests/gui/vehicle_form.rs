@@ -290,3 +290,43 @@ fn an_approach_that_is_typed_places_the_contact_and_moves_the_striking_car() {
     apply(&mut harness, Command::Undo);
     assert_ne!(scenario(&harness), after, "an edit can be taken back");
 }
+
+/// Two numbers that were typed within a second were taken back together, and Ctrl+Z in a field with nothing
+/// typed into it did what it does elsewhere only after that had lost the focus.
+#[test]
+fn each_number_that_is_typed_is_undone_by_itself() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::Show(Pane::Scenario));
+    harness.run_steps(4);
+    let numbers = |harness: &Harness<'_, App>| {
+        let struck = &state(harness).project.scenario().expect("a scenario").struck;
+        [struck.heading_rad, struck.yaw_rate_rad_s].map(|value| (value * 1e9).round() / 1e9)
+    };
+    let before = numbers(&harness);
+    harness.query_all_by_label("Heading").next().expect("a field").focus();
+    harness.run_steps(2);
+    for text in ["0.05 rad", "0.1 rad/s"] {
+        harness.event(egui::Event::Text(text.to_owned()));
+        harness.run_steps(2);
+        // To the next field, without a pause.
+        harness.key_press(egui::Key::Tab);
+        harness.run_steps(3);
+    }
+    assert_eq!(numbers(&harness), [0.05, 0.1]);
+    let undo = |harness: &mut Harness<'_, App>| {
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+        harness.run_steps(3);
+    };
+    undo(&mut harness);
+    assert_eq!(numbers(&harness), [0.05, before[1]]);
+    // What is being typed is undone before anything else.
+    harness.event(egui::Event::Text("7".to_owned()));
+    harness.run_steps(2);
+    undo(&mut harness);
+    assert_eq!(numbers(&harness), [0.05, before[1]]);
+    harness.key_press(egui::Key::Escape);
+    harness.run_steps(3);
+    undo(&mut harness);
+    assert_eq!(numbers(&harness), before);
+}
