@@ -39,13 +39,21 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     }
     let subject = project.subject();
     let hint = if subject.is_none() { ": click one to see it" } else { "" };
-    ui.weak(format!("{} of {} cases{hint}", table.len(), table.checked.dataset.cases.len()));
+    let number = format!("{} of {} cases{hint}", table.len(), table.checked.dataset.cases.len());
     let selected = match &subject {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
         _ => None,
     };
     let columns = CaseColumn::for_kind(table.checked.dataset.kind);
     let table = Table { cases: table, columns, selected };
+    ui.horizontal_wrapped(|ui| {
+        ui.weak(number);
+        let copy = ui.small_button("Copy cases");
+        let hint = "The cases that are listed, in their order, separated by tabs for a spreadsheet";
+        if copy.on_hover_text(hint).clicked() {
+            ui.ctx().copy_text(table.text(view.units));
+        }
+    });
     if let Some(case) = table.ui(ui, view, show_selected) {
         commands.push(Command::Select(Subject::Case { dataset: path, case }));
     }
@@ -112,6 +120,21 @@ impl Table<'_> {
             });
         });
         picked
+    }
+
+    /// The table as text, separated by tabs.
+    fn text(&self, units: UnitSystem) -> String {
+        let titles = self.columns.iter().map(|column| column.heading(units));
+        let titles = ["Case", "Flags"].map(str::to_owned).into_iter().chain(titles);
+        let line = |case: CaseRow<'_>| {
+            let flags: Vec<&str> = case.flags.iter().map(|flag| flag.kind.label()).collect();
+            let values = self.columns.iter().map(|column| case.text(column, units));
+            let cells = [case.name.to_owned(), flags.join(", ")].into_iter().chain(values);
+            cells.collect::<Vec<String>>().join("\t")
+        };
+        let head = titles.collect::<Vec<String>>().join("\t");
+        let rows = (0..self.cases.len()).filter_map(|idx| self.cases.row(idx)).map(line);
+        std::iter::once(head).chain(rows).collect::<Vec<String>>().join("\n") + "\n"
     }
 
     fn header_ui(&self, header: &mut TableRow<'_, '_>, view: &mut View) {

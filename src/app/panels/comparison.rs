@@ -7,7 +7,7 @@ use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{caveats_ui, facts_ui, value_row};
+use crate::app::widgets::{caveats_ui, facts_ui, value_row, value_ui};
 use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::numerics::Summary;
@@ -144,7 +144,7 @@ fn summary_row(ui: &mut Ui, name: &str, summary: &Summary, text: impl Fn(f64) ->
     ui.label(name);
     ui.label(summary.n.to_string());
     for value in [summary.mean, summary.std, summary.median, summary.p90] {
-        ui.monospace(text(value));
+        value_ui(ui, &text(value));
     }
     ui.end_row();
 }

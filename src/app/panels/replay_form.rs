@@ -2,10 +2,9 @@
 
 use egui::{ComboBox, Grid, Ui};
 
-use crate::app::panels::training_parts::optional_number_ui;
 use crate::app::widgets::{
-    EmptyField, VehiclePicker, count_field, optional_quantity, quantity_field, seed_field,
-    vehicle_name,
+    EmptyField, VehiclePicker, count_field, optional_count, optional_quantity, quantity_field,
+    seed_field, vehicle_name,
 };
 use impactlab_core::collision::Role;
 use impactlab_core::ranges::{
@@ -35,7 +34,7 @@ pub(super) fn settings_ui(
         of_pane.iter().map(|(_, choice)| choice).filter(is_own).cloned().collect();
     Grid::new("replay settings").num_columns(2).show(ui, |ui| {
         let name = ui.label("Event");
-        optional_number_ui(ui, &mut request.event, "the first", &EVENT)
+        optional_count(ui, &mut request.event, "the first", &EVENT)
             .on_hover_text(EVENT.meaning)
             .labelled_by(name.id);
         ui.end_row();

@@ -5,9 +5,9 @@ use std::path::Path;
 use egui::{Grid, Ui};
 
 use crate::app::network::NetworkQuestions;
-use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
+use crate::app::panels::training_parts::settings_rows_ui;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{dataset_choice, seed_field};
+use crate::app::widgets::{dataset_choice, optional_count, seed_field};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::ranges::EPOCHS;
 
@@ -36,7 +36,7 @@ pub fn force_form_ui(
         });
         ui.end_row();
         let name = ui.label("Epochs");
-        optional_number_ui(ui, &mut form.epochs, "as configured", &EPOCHS)
+        optional_count(ui, &mut form.epochs, "as configured", &EPOCHS)
             .labelled_by(name.id)
             .on_hover_text("At most; 0 for what the settings say. Training stops before when the validation loss stops falling");
         ui.end_row();

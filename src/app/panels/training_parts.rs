@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use egui::{DragValue, ProgressBar, Response, Ui};
+use egui::{ProgressBar, Ui};
 use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::{Command, TrainingCommand};
@@ -14,7 +14,6 @@ use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, duration_text};
 use impactlab_core::data::Severity;
-use impactlab_core::ranges::Range;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
 use impactlab_study::TrainingOptions;
@@ -77,28 +76,6 @@ pub fn settings_rows_ui(ui: &mut Ui, parts: &str, training: &mut TrainingOptions
     ui.label("");
     bad_cases_ui(ui, &mut training.bad_cases);
     ui.end_row();
-}
-
-/// Draws a number field whose value may be left open, and returns its response. The number 0 leaves
-/// the value open, which sets it to `None`.
-///
-/// - `open`: text that is shown instead of the number while the value is open;
-/// - `range`: the numbers that it may have otherwise.
-pub fn optional_number_ui(
-    ui: &mut Ui,
-    value: &mut Option<usize>,
-    open: &str,
-    range: &Range,
-) -> Response {
-    let most = range.high as usize;
-    let mut number = value.unwrap_or(0);
-    let text = |n: f64, _| if n < 1.0 { open.to_owned() } else { format!("{n:.0}") };
-    let field = DragValue::new(&mut number).range(0..=most).speed(0.2).custom_formatter(text);
-    let response = ui.add(field);
-    if response.changed() {
-        *value = (number > 0).then_some(number);
-    }
-    response
 }
 
 /// Draws the buttons that start, pause or resume, and cancel a training.

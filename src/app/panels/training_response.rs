@@ -6,9 +6,11 @@ use egui::{ComboBox, Grid, Ui};
 
 use crate::app::network::{NetworkQuestions, TrainingMode};
 use crate::app::panels::file_start::{file_list_ui, open_files};
-use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
+use crate::app::panels::training_parts::settings_rows_ui;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{EmptyField, dataset_choice, optional_quantity, seed_field};
+use crate::app::widgets::{
+    EmptyField, dataset_choice, optional_count, optional_quantity, seed_field,
+};
 use impactlab_core::data::FileKind;
 use impactlab_core::ranges::{STEERING_RATIO, TRAJECTORIES};
 use impactlab_core::units::UnitSystem;
@@ -111,7 +113,7 @@ fn numbers_ui(ui: &mut Ui, questions: &mut NetworkQuestions, is_of_log: bool) {
     let name = ui.label("Trajectories");
     let hint = "To learn from, spinning and others as they occur; 0 for all that are not kept for the test";
     ui.add_enabled_ui(is_fine_tuning, |ui| {
-        optional_number_ui(ui, &mut form.trajectories, "all", &TRAJECTORIES)
+        optional_count(ui, &mut form.trajectories, "all", &TRAJECTORIES)
             .labelled_by(name.id)
             .on_hover_text(hint);
     });

@@ -22,8 +22,8 @@ pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use facts::{facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use quantity::{
-    EmptyField, SliderRange, count_field, duration_text, optional_quantity, quantity_field,
-    quantity_slider, quantity_value, seed_field, value_row, value_ui, within_view,
+    EmptyField, SliderRange, count_field, duration_text, optional_count, optional_quantity,
+    quantity_field, quantity_slider, quantity_value, seed_field, value_row, value_ui, within_view,
 };
 pub use refusal::problem_line_ui;
 pub use time_figure::{BetweenCursors, time_figure};

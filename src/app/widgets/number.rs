@@ -169,8 +169,14 @@ pub(super) fn number_ui(
         typed.replace(found);
         value
     };
-    let is_plain = refused.is_some() || number.value.is_none() || number.unit.symbol.is_empty();
-    let suffix = if is_plain { String::new() } else { format!(" {}", number.unit.symbol) };
+    let symbol = number.unit.symbol;
+    let suffix = match (number.value, empty) {
+        _ if refused.is_some() || symbol.is_empty() => String::new(),
+        (Some(_), _) => format!(" {symbol}"),
+        // In which unit a number is taken that is typed without one.
+        (None, Some((text, _))) if !says_unit(text, symbol) => format!(" [{symbol}]"),
+        (None, _) => String::new(),
+    };
     let mut shown = start;
     let response = ui.vertical(|ui| {
         let response = ui.scope(|ui| {
@@ -224,6 +230,11 @@ pub(super) fn number_ui(
         Typed::Nothing => Edit::None,
     };
     (response, edit)
+}
+
+/// Whether a text has the symbol of a unit as a word of its own.
+fn says_unit(text: &str, symbol: &str) -> bool {
+    format!(" {text} ").replace(['(', ')', ','], " ").contains(&format!(" {symbol} "))
 }
 
 /// Whether the user does something in this frame: what was said of what was typed before has been seen.

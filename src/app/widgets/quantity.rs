@@ -153,13 +153,39 @@ fn hint(range: &Range, unit: &Unit) -> String {
 pub fn count_field<N: Numeric>(ui: &mut Ui, value: &mut N, range: &Range, speed: f64) -> Response {
     let number = number(range, Some(value.to_f64()), UnitSystem::Si);
     let expected = format!("a whole number, {}", number.expected);
+    let hint = format!("{}: {expected}", range.meaning);
     let number = Number { is_whole: true, expected, ..number };
     let (response, edit) =
         number_ui(ui, &number, |ui, editing| ui.add(field(editing, speed).fixed_decimals(0)));
     if let Edit::Value(taken) = edit {
         *value = N::from_f64(taken);
     }
-    response
+    response.on_hover_text(hint)
+}
+
+/// Draws a number field that counts something and may be left open, and returns its response: who empties it,
+/// or types 0, leaves it open. A number beyond the range is treated as by [`quantity_field`].
+///
+/// - `open`: what the field says while it is open.
+pub fn optional_count(
+    ui: &mut Ui,
+    value: &mut Option<usize>,
+    open: &str,
+    range: &Range,
+) -> Response {
+    let number = number(range, value.map(|n| n as f64), UnitSystem::Si);
+    let expected = format!("a whole number, {}; empty: {open}", number.expected);
+    let hint = format!("{}: {expected}", range.meaning);
+    let (limits, empty) = ([0.0, number.limits[1]], Some((open, 0.0)));
+    let number = Number { is_whole: true, expected, limits, empty, ..number };
+    let (response, edit) =
+        number_ui(ui, &number, |ui, editing| ui.add(field(editing, 0.2).fixed_decimals(0)));
+    match edit {
+        Edit::Value(taken) => *value = Some(taken as usize).filter(|n| *n > 0),
+        Edit::Cleared => *value = None,
+        Edit::None => {}
+    }
+    response.on_hover_text(hint)
 }
 
 /// The seeds that a field takes: whole numbers that it holds exactly.
@@ -173,7 +199,7 @@ const SEED: Range = Range::whole(
 /// large, is treated as by [`quantity_field`]; a larger seed from elsewhere stays as it is until another one
 /// is entered.
 pub fn seed_field(ui: &mut Ui, seed: &mut u64) -> Response {
-    let exact = format!("Seed {seed}: {}", SEED.meaning);
+    let exact = format!("Seed {seed}");
     count_field(ui, seed, &SEED, 0.2).on_hover_text(exact)
 }
 
@@ -267,7 +293,7 @@ pub fn value_ui(ui: &mut Ui, text: &str) {
 mod tests {
     use egui::{Event, Grid, Key};
     use egui_kittest::Harness;
-    use egui_kittest::kittest::Queryable;
+    use egui_kittest::kittest::{NodeT, Queryable};
 
     use super::*;
     use impactlab_core::ranges::BODY_MASS;
@@ -377,6 +403,55 @@ mod tests {
         harness.run();
         assert_eq!(harness.state().0, Some(1700.0));
         assert!(harness.query_by_label_contains("not possible").is_none());
+    }
+
+    /// In which unit a number is taken was seen in a field that had one.
+    #[test]
+    fn an_empty_field_says_the_unit_of_what_is_typed_once() {
+        for (text, expected) in [
+            ("not known", "not known [lb]"),
+            ("(2000 lb)", "(2000 lb)"),
+            ("2000 lb, as the file says", "2000 lb, as the file says"),
+        ] {
+            let mut harness = Harness::new_ui(|ui| {
+                let empty = EmptyField { text, start_si: 1500.0 };
+                optional_quantity(ui, &mut None, empty, &BODY_MASS, UnitSystem::Us);
+            });
+            harness.run();
+            let field = harness.get_by_role(egui::accesskit::Role::SpinButton);
+            assert_eq!(field.accesskit_node().value().as_deref(), Some(expected));
+        }
+    }
+
+    /// A number of epochs beyond the range became the largest one without a word.
+    #[test]
+    fn a_count_that_is_left_open_is_emptied_and_not_cut_off() {
+        let range = Range::whole("epochs", [1, 100], "passes over the training cases");
+        let mut harness = Harness::new_ui_state(
+            |ui, count: &mut Option<usize>| {
+                optional_count(ui, count, "as configured", &range);
+            },
+            None,
+        );
+        harness.run();
+        for (typed, stays) in
+            [("12", Some(12)), ("1000", Some(12)), ("2.5", Some(12)), ("0", None), ("7", Some(7))]
+        {
+            harness.key_press(Key::Tab);
+            harness.run();
+            harness.event(Event::Text(typed.to_owned()));
+            harness.run();
+            harness.key_press(Key::Enter);
+            harness.run();
+            assert_eq!(*harness.state(), stays, "{typed}");
+        }
+        harness.key_press(Key::Tab);
+        harness.run();
+        harness.event(Event::Text(" ".to_owned()));
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+        assert_eq!(*harness.state(), None);
     }
 
     #[test]
