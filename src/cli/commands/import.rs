@@ -13,8 +13,8 @@ use crate::cli::options::{OverwriteArg, Words, one_of};
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::collision::{ChannelClass, filter_channel};
 use impactlab_core::data::{
-    ColumnMap, CrashTest, Existing, RecordedControls, RecorderRecord, Severity, check_file,
-    parts_beside, read_any_series, write_atomically, write_restricted_series_csv,
+    ColumnMap, CrashTest, Existing, RecordedControls, RecordedSide, RecorderRecord, Severity,
+    check_file, parts_beside, read_any_series, write_atomically, write_restricted_series_csv,
     write_restricted_table,
 };
 use impactlab_reconstruct::evidence::{Edr, Evidence};
@@ -209,12 +209,16 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
             delta_v.delta_v_m_s.abs()
         ));
     }
+    let sides = record.sides;
+    let side =
+        |stated: Option<RecordedSide>, said: Side| stated.map_or(said.word(), RecordedSide::word);
     notes.push(format!(
         "time 0 is when the recorder woke up, some milliseconds after the first contact; the sensor is taken to be \
          at the CG until sensor_x_m and sensor_y_m say where it is; lateral Δv is taken as positive to the {}, the \
-         yaw rate as positive to the {}, the angle of the steering wheel as positive to the left",
-        args.lateral.word(),
-        args.yaw_rate.word()
+         yaw rate as positive to the {}, the angle of the steering wheel as positive to the {}",
+        side(sides.lateral, args.lateral),
+        side(sides.yaw_rate, args.yaw_rate),
+        side(sides.steering, Side::Left)
     ));
     if !record.before.time_s.is_empty() {
         write_controls(&staging.join("controls.csv"), &record.before)?;

@@ -99,8 +99,8 @@ pub use file::{list_folder, open_file, read_bytes, read_utf8};
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub use foreign::is_gltf;
 pub use formats::{
-    BarrierForce, BarrierMomentum, CrashTest, RecordedControls, RecordedDeltaV, RecordedSpeed,
-    RecorderRecord, TestChannel, TestVehicle,
+    BarrierForce, BarrierMomentum, CrashTest, RecordedControls, RecordedDeltaV, RecordedSide,
+    RecordedSides, RecordedSpeed, RecorderRecord, TestChannel, TestVehicle,
 };
 pub use formats::{DeckUnits, ModelStart, parts_beside};
 pub use formula::{Formula, FormulaPart};

@@ -19,6 +19,7 @@ mod parquet_check;
 mod parquet_file;
 mod positions;
 mod recorder;
+mod recorder_columns;
 mod recorder_table;
 #[cfg(test)]
 mod sample_tests;
@@ -37,7 +38,9 @@ pub use fem::{DeckUnits, ModelStart};
 pub use nhtsa::{CrashTest, TestChannel, TestVehicle};
 pub use nhtsa_curves::{BarrierForce, BarrierMomentum};
 pub(super) use positions::{NAUTICAL_MILE_M, OF_COURSE};
-pub use recorder::{RecordedControls, RecordedDeltaV, RecordedSpeed, RecorderRecord};
+pub use recorder::{
+    RecordedControls, RecordedDeltaV, RecordedSide, RecordedSides, RecordedSpeed, RecorderRecord,
+};
 
 /// Bytes at the beginning of a file by which a binary format is known.
 const FIRST_BYTES: u64 = 64;

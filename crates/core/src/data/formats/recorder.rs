@@ -7,7 +7,8 @@
 //! ```
 //!
 //! A column whose header names no unit is left out, and said so. Lateral values and the yaw rate are positive to
-//! the right, as SAE J1698 has them; a steering wheel is positive to the left.
+//! the right, as SAE J1698 has them; a steering wheel is positive to the left. A column that names another side is
+//! turned.
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -19,7 +20,7 @@ use crate::data::formats::cdr::{
     is_unread,
 };
 use crate::data::formats::number_text;
-use crate::data::formats::recorder_table::Table563;
+use crate::data::formats::recorder_columns::Table563;
 use crate::data::formats::upright::upright;
 use crate::data::spelling::{is_delta_v, letters_and_digits, trailing_unit};
 use crate::data::text::read_text;
@@ -60,6 +61,39 @@ pub struct RecorderRecord {
     pub speed_before: Option<RecordedSpeed>,
     /// Speed and controls in the seconds before.
     pub before: RecordedControls,
+    /// To which sides its values are positive in the file, where their columns say so. What is positive to another
+    /// side than usual was turned.
+    pub sides: RecordedSides,
+}
+
+/// A side to which recorded values are positive.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RecordedSide {
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+}
+
+impl RecordedSide {
+    /// Its word in a sentence.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+}
+
+/// To which sides values are positive in a file; `None` where it does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RecordedSides {
+    /// Of the lateral change of velocity.
+    pub lateral: Option<RecordedSide>,
+    /// Of the yaw rate.
+    pub yaw_rate: Option<RecordedSide>,
+    /// Of the angle of the steering wheel.
+    pub steering: Option<RecordedSide>,
 }
 
 /// A change of velocity as it was recorded last.
@@ -133,18 +167,42 @@ impl RecorderRecord {
         read_text(path, MAX_TABLE_BYTES).is_ok_and(|text| is_report(&text.text))
     }
 
-    /// Turns lateral changes of velocity that a report has as positive to the left.
+    /// Turns lateral changes of velocity that a report has as positive to the left, unless it says their side itself.
     pub fn turn_lateral(&mut self) {
+        if !self.is_open(self.sides.lateral, RecordedSide::Left, "lateral Δv") {
+            return;
+        }
         if let Some(delta_v) = &mut self.delta_v_right {
             delta_v.delta_v_m_s = 0.0 - delta_v.delta_v_m_s;
         }
     }
 
-    /// Turns yaw rates that a report has as positive to the left.
+    /// Turns yaw rates that a report has as positive to the left, likewise.
     pub fn turn_yaw_rate(&mut self) {
-        for rate in &mut self.before.yaw_rate_right_rad_s {
-            *rate = 0.0 - *rate;
+        if self.is_open(self.sides.yaw_rate, RecordedSide::Left, "the yaw rate") {
+            self.before.yaw_rate_right_rad_s.iter_mut().for_each(|rate| *rate = 0.0 - *rate);
         }
+    }
+
+    /// Turns angles of the steering wheel that a report has as positive to the right, likewise.
+    pub fn turn_steering(&mut self) {
+        if self.is_open(self.sides.steering, RecordedSide::Right, "the angle of the steering wheel")
+        {
+            self.before.steering_wheel_rad.iter_mut().for_each(|angle| *angle = 0.0 - *angle);
+        }
+    }
+
+    /// Whether the file leaves open to which side values are positive. One that says another side than somebody does is
+    /// believed, and that is said.
+    fn is_open(&mut self, stated: Option<RecordedSide>, said: RecordedSide, name: &str) -> bool {
+        if let Some(stated) = stated.filter(|stated| *stated != said) {
+            self.doubts.push(format!(
+                "{name} is positive to the {} by its column, not to the {}; the column counts",
+                stated.word(),
+                said.word()
+            ));
+        }
+        stated.is_none()
     }
 
     /// Whether a file is such a report, or a table with a change of velocity in its first lines.

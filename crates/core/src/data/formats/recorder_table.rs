@@ -1,11 +1,11 @@
 //! What the columns of one table of an event data recorder hold, known by their names.
 
-use crate::data::error::quoted;
-use crate::data::formats::cdr::number;
 use crate::data::formats::recorder::{
-    LONGEST_S, RecordedControls, RecordedDeltaV, RecordedSpeed, RecorderRecord, SETTLED_S,
+    LONGEST_S, RecordedControls, RecordedDeltaV, RecordedSide, RecordedSpeed, RecorderRecord,
+    SETTLED_S,
 };
-use crate::data::spelling::{is_delta_v, letters_and_digits, quantity_name, trailing_unit};
+use crate::data::formats::recorder_columns::{NO_RECORD, Table563, has, is_of_road_wheels};
+use crate::data::spelling::is_delta_v;
 use crate::ranges::{ANGULAR_VELOCITY_SAMPLE, INSTANT, Range, SPEED, STEERING_WHEEL_ANGLE};
 use crate::units::Quantity;
 
@@ -35,13 +35,6 @@ const COVERED_S: [f64; 2] = [0.1, 60.0];
 /// Rounding of a recorded speed, m/s: 1 mph and its halves.
 const ROUNDING_M_S: f64 = 0.6;
 
-/// The columns of a table: names with units, numbers and texts.
-pub(super) struct Table563<'a> {
-    pub header: Vec<String>,
-    pub numbers: &'a dyn Fn(usize) -> Vec<Option<f64>>,
-    pub texts: &'a dyn Fn(usize) -> Vec<String>,
-}
-
 impl RecorderRecord {
     /// Adds what the columns of a table hold.
     pub(super) fn add_table(&mut self, table: &Table563<'_>, has_controls: bool) {
@@ -59,9 +52,9 @@ impl RecorderRecord {
         ] {
             let is_wanted =
                 |key: &str| is_delta_v(key) && key.contains(words) && !has(key, &NO_RECORD);
-            let Some(values) = table.column(Quantity::Speed, &mut doubts, is_wanted) else {
-                continue;
-            };
+            let usual = (words == "lateral").then_some(RecordedSide::Right);
+            let found = table.sided(Quantity::Speed, usual, &mut doubts, is_wanted);
+            let Some((values, side)) = found else { continue };
             let pairs = delta_v_pairs(&time_s, &values);
             if let Some(why) = no_delta_v(&pairs) {
                 doubts.push(format!("the change of velocity {name} {why}; it is left out"));
@@ -82,6 +75,7 @@ impl RecorderRecord {
                 ));
             }
             *slot = Some(recorded);
+            self.sides.lateral = self.sides.lateral.or(side);
         }
         doubts.extend(table.unread_delta_v());
         match has_controls {
@@ -108,9 +102,15 @@ impl RecorderRecord {
             doubts.extend(table.other_speeds());
         }
         let speed = speed.unwrap_or_default();
-        let steering = table.column(Quantity::Angle, doubts, |key| key.contains("steering"));
+        let is_steering = |key: &str| key.contains("steering") && !is_of_road_wheels(key);
+        let usual = Some(RecordedSide::Left);
+        let steering = table.sided(Quantity::Angle, usual, doubts, is_steering);
+        let (steering, steering_side) = steering.unzip();
+        doubts.extend(table.unread_steering());
         let is_yaw_rate = |key: &str| key.contains("yawrate") && !has(key, &["desired", "target"]);
-        let yaw_rate = table.column(Quantity::AngularVelocity, doubts, is_yaw_rate);
+        let usual = Some(RecordedSide::Right);
+        let yaw_rate = table.sided(Quantity::AngularVelocity, usual, doubts, is_yaw_rate);
+        let (yaw_rate, yaw_rate_side) = yaw_rate.unzip();
         let rows = rows_before(time_s, &speed, doubts);
         let all = |values: &[Option<f64>], range: Range| {
             let of = |row: &usize| {
@@ -150,6 +150,8 @@ impl RecorderRecord {
         let yaw_rate = of(yaw_rate, ANGULAR_VELOCITY_SAMPLE, "yaw rate", doubts);
         let braked = table.switch(&rows, is_brake, "service brake", doubts);
         let anti_lock = table.switch(&rows, is_anti_lock, "anti-lock system", doubts);
+        self.sides.steering = steering_side.flatten();
+        self.sides.yaw_rate = yaw_rate_side.flatten();
         self.before = RecordedControls {
             time_s,
             speed_m_s,
@@ -160,14 +162,6 @@ impl RecorderRecord {
         };
     }
 }
-
-fn has(key: &str, words: &[&str]) -> bool {
-    words.iter().any(|word| key.contains(word))
-}
-
-/// Words of columns of a change of velocity that are no record of it over time: its largest value, and the parts
-/// of which it is the sum.
-const NO_RECORD: [&str; 3] = ["maximum", "persample", "changeper"];
 
 /// Whether a column has the speed of the car, and not that of a wheel, of the engine, of another car or of a driver's
 /// wish.
@@ -236,134 +230,6 @@ fn wrong_span(time_s: &[f64]) -> Option<String> {
             time_s.len()
         )
     })
-}
-
-impl Table563<'_> {
-    fn keys(&self) -> Vec<String> {
-        let bare = |name: &String| {
-            letters_and_digits(name.rsplit_once('[').map_or(name.as_str(), |(bare, _)| bare))
-        };
-        self.header.iter().map(bare).collect()
-    }
-
-    /// That the columns of a speed are not of that of the car; `None` if there are none.
-    fn other_speeds(&self) -> Option<String> {
-        let columns = self.keys().into_iter().zip(&self.header);
-        let of_others = columns.filter(|(key, name)| {
-            let has_unit = matches!(trailing_unit(name, Quantity::Speed), Ok(Some(_)));
-            has_unit && key.contains("speed") && !is_delta_v(key)
-        });
-        let names: Vec<String> = of_others.map(|(_, name)| quoted(name)).collect();
-        let said =
-            "may not have the speed of the car and is not read; call its column Speed if it has";
-        (!names.is_empty()).then(|| format!("{} {said}", names.join(", ")))
-    }
-
-    /// Columns of a change of velocity that are not read, with the reason.
-    fn unread_delta_v(&self) -> Vec<String> {
-        let columns = self.keys().into_iter().zip(&self.header);
-        let of_delta_v = columns.filter(|(key, name)| {
-            let has_unit = matches!(trailing_unit(name, Quantity::Speed), Ok(Some(_)));
-            is_delta_v(key) && has_unit && !key.contains("maximum")
-        });
-        let unread = |(key, name): (String, &String)| {
-            let why = match () {
-                () if has(&key, &NO_RECORD) => "has the change from sample to sample",
-                () if has(&key, &["longitudinal", "lateral"]) => return None,
-                () => "says neither longitudinal nor lateral in its name",
-            };
-            Some(format!("{} {why}; it is not read", quoted(name)))
-        };
-        of_delta_v.filter_map(unread).collect()
-    }
-
-    /// What the first column says whose name fits and that is on or off in all rows; one that is not is said.
-    fn switch(
-        &self,
-        rows: &[usize],
-        fits: impl Fn(&str) -> bool,
-        name: &str,
-        doubts: &mut Vec<String>,
-    ) -> Option<Vec<bool>> {
-        let keys = self.keys();
-        let columns: Vec<usize> = (0..keys.len()).filter(|idx| fits(&keys[*idx])).collect();
-        let read = |idx: &usize| {
-            let texts = (self.texts)(*idx);
-            rows.iter().map(|row| is_on(texts.get(*row)?)).collect::<Option<Vec<bool>>>()
-        };
-        let found = columns.iter().find_map(read);
-        if found.is_none() && !columns.is_empty() {
-            doubts.push(format!(
-                "the {name} is not recorded as on or off throughout; it is left out"
-            ));
-        }
-        found
-    }
-
-    /// Cells of a column that are neither blank nor numbers, such as dates that a spreadsheet has made of numbers.
-    fn unreadable(&self, idx: usize, values: &[Option<f64>]) -> Option<String> {
-        let texts = (self.texts)(idx);
-        let is_text =
-            |(text, value): &(&String, &Option<f64>)| value.is_none() && !text.trim().is_empty();
-        let mut unreadable = texts.iter().zip(values).filter(is_text);
-        let (first, _) = unreadable.next()?;
-        Some(format!(
-            "cells of {} that are no numbers: {}, the first of them {}; they are taken as blank",
-            quoted(self.header.get(idx)?),
-            1 + unreadable.count(),
-            quoted(first)
-        ))
-    }
-
-    /// The numbers of the first column whose name fits and that has a unit, in SI units. Others that fit are said.
-    fn column(
-        &self,
-        quantity: Quantity,
-        doubts: &mut Vec<String>,
-        fits: impl Fn(&str) -> bool,
-    ) -> Option<Vec<Option<f64>>> {
-        for (idx, (name, key)) in self.header.iter().zip(self.keys()).enumerate() {
-            if !fits(&key) {
-                continue;
-            }
-            match trailing_unit(name, quantity) {
-                Ok(Some(unit)) => {
-                    let later = self.keys().into_iter().enumerate().skip(idx + 1);
-                    let later: Vec<String> = later
-                        .filter(|(_, key)| fits(key))
-                        .filter_map(|(at, _)| self.header.get(at))
-                        .filter(|name| matches!(trailing_unit(name, quantity), Ok(Some(_))))
-                        .map(|name| quoted(name))
-                        .collect();
-                    if !later.is_empty() {
-                        let later = later.join(", ");
-                        doubts.push(format!("{} is read, and not {later}", quoted(name)));
-                    }
-                    let values = (self.numbers)(idx);
-                    doubts.extend(self.unreadable(idx, &values));
-                    let in_si = |value: Option<f64>| value.map(|value| unit.to_si(value));
-                    return Some(values.into_iter().map(in_si).collect());
-                }
-                Ok(None) if quantity != Quantity::Angle || key.contains("wheel") => {
-                    doubts.push(format!(
-                        "column {} {} names no unit of {}; it is left out",
-                        idx + 1,
-                        quoted(name),
-                        quantity_name(quantity)
-                    ));
-                }
-                Ok(None) => {}
-                Err(unit) => doubts.push(format!(
-                    "column {} {} is in {}, which is no unit of {}; it is left out",
-                    idx + 1,
-                    quoted(name),
-                    quoted(&unit),
-                    quantity_name(quantity)
-                )),
-            }
-        }
-        None
-    }
 }
 
 /// Times and changes of velocity of a record after the recorder has woken up.
@@ -448,16 +314,4 @@ fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
     let earlier = earlier.map(|(_, value)| *value).or(at_wake_up);
     let is_cut = earlier.is_some_and(|value| (delta_v_m_s - value).abs() > CUT_M_S);
     Some(RecordedDeltaV { delta_v_m_s, ends_s: Some(ends_s), is_cut })
-}
-
-/// Whether a switch is on; `None` if the cell does not say.
-fn is_on(cell: &str) -> Option<bool> {
-    match letters_and_digits(cell).as_str() {
-        // As spreadsheets in German write them, too.
-        "on" | "yes" | "applied" | "pressed" | "active" | "engaged" | "true" | "ein" | "ja"
-        | "wahr" => Some(true),
-        "off" | "no" | "notapplied" | "released" | "notpressed" | "inactive" | "false"
-        | "nonengaged" | "notengaged" | "aus" | "nein" | "falsch" => Some(false),
-        _ => number(cell).filter(|number| [0.0, 1.0].contains(number)).map(|number| number != 0.0),
-    }
 }

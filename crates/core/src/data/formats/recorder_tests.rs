@@ -379,3 +379,41 @@ fn a_change_of_velocity_that_is_not_read_is_said() {
     assert!(plain.delta_v_right.is_some(), "{plain:?}");
     assert!(!plain.doubts.iter().any(|doubt| doubt.ends_with("it is not read")), "{plain:?}");
 }
+
+/// A column that names its side is turned where that is not the usual one, and no option turns it again.
+#[test]
+fn a_side_that_a_column_names_counts() {
+    let text = |lateral: &str, yaw_rate: &str, steering: &str| {
+        format!(
+            "Time [s],Speed [km/h],\"Steering wheel angle{steering} [deg]\",Yaw rate{yaw_rate} [deg/s],\
+             \"Delta-V lateral{lateral} [km/h]\"\n-0.5,60,10,2,\n0,58,20,4,0\n0.05,,,,9\n0.1,,,,9\n0.15,,,,9\n"
+        )
+    };
+    let usual = read(&text("", "", ""), None).unwrap();
+    let values = |record: &RecorderRecord| {
+        let lateral = record.delta_v_right.unwrap().delta_v_m_s;
+        [lateral, record.before.yaw_rate_right_rad_s[1], record.before.steering_wheel_rad[1]]
+    };
+    let turned = values(&usual).map(|value| 0.0 - value);
+    assert_eq!((usual.sides, usual.doubts.len()), (RecordedSides::default(), 0), "{usual:?}");
+    let named = text(" (left positive)", " (CCW positive)", ", positive to the right");
+    let mut other = read(&named, None).unwrap();
+    assert_eq!(values(&other), turned, "{other:?}");
+    assert_eq!(other.doubts.iter().filter(|doubt| doubt.contains("it is turned")).count(), 3);
+    other.turn_lateral();
+    other.turn_yaw_rate();
+    other.turn_steering();
+    assert_eq!((values(&other), other.doubts.len()), (turned, 3), "{other:?}");
+    let mut same = read(&text(" (right positive)", "", ""), None).unwrap();
+    assert_eq!(values(&same), values(&usual));
+    same.turn_lateral();
+    same.turn_steering();
+    let [lateral, _, steering] = values(&same);
+    assert_eq!((lateral, steering), (values(&usual)[0], turned[2]));
+    assert!(same.doubts.iter().any(|doubt| doubt.contains("the column counts")), "{same:?}");
+    // The angle of the road wheels is none of the steering wheel.
+    let road = text("", "", "").replace("Steering wheel angle", "Steering angle of a road wheel");
+    let road = read(&road, None).unwrap();
+    assert!(road.before.steering_wheel_rad.is_empty(), "{road:?}");
+    assert!(road.doubts.iter().any(|doubt| doubt.contains("road wheels")), "{road:?}");
+}

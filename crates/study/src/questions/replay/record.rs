@@ -54,17 +54,14 @@ impl ReplayRequest {
         if self.yaw_rate_left {
             record.turn_yaw_rate();
         }
+        if self.steering_right {
+            record.turn_steering();
+        }
         let from_s = self.from_s.unwrap_or(EARLIEST_S);
         let RecorderRecord { description, event, doubts, before, .. } = record;
         let n_earlier = before.time_s.partition_point(|time_s| *time_s < from_s - 1e-9);
         let mut samples = without_first(before, n_earlier);
         check(path, &doubts, &samples)?;
-        if self.steering_right {
-            samples
-                .steering_wheel_rad
-                .iter_mut()
-                .for_each(|angle_rad| *angle_rad = 0.0 - *angle_rad);
-        }
         let ratio = self.ratio();
         for angle_rad in &samples.steering_wheel_rad {
             STEER_ANGLE.check(angle_rad / ratio).map_err(|source| StudyError::RoadWheel {
