@@ -29,6 +29,8 @@ const OTHER_FORMAT: &[u8] = b"AutoCAD DXB";
 const MAX_DEPTH: usize = 8;
 /// Largest distance between an arc and its chords, m.
 const CHORD_ERROR_M: f64 = 0.005;
+/// Longer side of the drawing of a place of a collision, m.
+const USUAL_SIDE_M: std::ops::RangeInclusive<f64> = 3.0..=10_000.0;
 /// Least vertical part of the normal of what lies in the plane of the ground.
 const LEAST_NORMAL: f64 = 0.999;
 
@@ -64,7 +66,7 @@ impl Drawing {
         DrawingSummary { unit, n_lines, extent_m: extent_of(points) }
     }
 
-    /// What of it is not drawn or may be drawn too much, in words.
+    /// What of it is not drawn or may be drawn too much, and that its size is doubtful, in words.
     ///
     /// - `path`: of its file.
     pub fn notes(&self, path: &Path) -> Vec<String> {
@@ -79,7 +81,22 @@ impl Drawing {
                 path.display()
             )
         });
-        left_out.into_iter().chain(unknown_frozen).collect()
+        let size = self.doubtful_size().map(|text| format!("{}: {text}", path.display()));
+        left_out.into_iter().chain(unknown_frozen).chain(size).collect()
+    }
+
+    /// That it is as large or as small as no ground of a collision, as where a program states another unit than that of
+    /// the numbers; `None` of a usual size.
+    fn doubtful_size(&self) -> Option<String> {
+        let DrawingSummary { unit, extent_m, .. } = self.summary();
+        let [low, high] = extent_m?;
+        let [width_m, height_m] = [high[0] - low[0], high[1] - low[1]];
+        let is_usual = USUAL_SIDE_M.contains(&width_m.max(height_m));
+        (!is_usual).then(|| {
+            format!(
+                "it is {width_m:.1} x {height_m:.1} m large in {unit}: is that its unit? Say another one (unit in [dxf])"
+            )
+        })
     }
 }
 

@@ -211,3 +211,21 @@ fn a_drawing_of_too_many_objects_is_refused_before_it_is_read() {
     let error = message(b"AutoCAD DXB 1.0\r\n\x1a\0".to_vec());
     assert!(error.contains("it is a DXB file; save it as DXF"), "{error}");
 }
+
+/// Drawings of one unit whose program states that of its template.
+#[test]
+fn a_drawing_as_large_or_small_as_no_place_is_said() {
+    let is_said = |units: Units, side: f64| {
+        let mut drawing = dxf::Drawing::new();
+        drawing.header.version = AcadVersion::R2010;
+        drawing.header.default_drawing_units = units;
+        drawing.add_entity(on("KERB", line([0.0, 0.0], [side, side / 2.0])));
+        let (_folder, file) = saved(&drawing);
+        let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
+        let notes = read.notes(std::path::Path::new("survey.dxf"));
+        notes.iter().any(|note| note.contains("is that its unit?"))
+    };
+    assert!(is_said(Units::Meters, 50_000.0), "millimetres that are said to be metres");
+    assert!(is_said(Units::Inches, 50.0), "metres that are said to be inches");
+    assert!(!is_said(Units::Meters, 50.0) && !is_said(Units::Millimeters, 50_000.0));
+}
