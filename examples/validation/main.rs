@@ -32,6 +32,7 @@ struct Found {
     /// Without the headers.
     tables: Vec<Vec<Row>>,
     held: Vec<HeldIntervals>,
+    held_in_all: Vec<HeldIntervals>,
 }
 
 /// A row of a table.
@@ -101,6 +102,7 @@ fn replace(
         table.lines = header.chain(rows.iter().map(|row| row.line.clone())).collect();
     }
     measurement.held.clone_from(&found.held);
+    measurement.held_in_all.clone_from(&found.held_in_all);
     Ok(document)
 }
 

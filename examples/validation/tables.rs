@@ -84,7 +84,12 @@ fn impact(path: &Path) -> Result<Found, Box<dyn Error>> {
         let surface = format!("{DEFAULT_RESTITUTION:.2}, {friction_limit:.2}{of_default}");
         rows.push(Row::new(&[name.to_owned(), surface, share(&train), share(&test)], 1));
     }
-    Ok(Found { subject: Measured::Impact, tables: vec![rows], held: Vec::new() })
+    Ok(Found {
+        subject: Measured::Impact,
+        tables: vec![rows],
+        held: Vec::new(),
+        held_in_all: Vec::new(),
+    })
 }
 
 /// Errors of each of both sets of the reference car.
@@ -110,7 +115,12 @@ fn four_dof(datasets: &Path) -> Result<Found, Box<dyn Error>> {
         cells.extend([format!("{:.2}", ends.median), violations.to_string()]);
         rows.push(Row::new(&cells, 1));
     }
-    Ok(Found { subject: Measured::FourDof, tables: vec![rows], held: Vec::new() })
+    Ok(Found {
+        subject: Measured::FourDof,
+        tables: vec![rows],
+        held: Vec::new(),
+        held_in_all: Vec::new(),
+    })
 }
 
 /// Errors of both vehicles of recorded pairs, and how often their regions held, of the half that the
@@ -160,7 +170,7 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
             }
         }
     }
-    Ok(Found { subject: Measured::Pairs, tables: vec![rows], held })
+    Ok(Found { subject: Measured::Pairs, tables: vec![rows], held, held_in_all: Vec::new() })
 }
 
 /// Errors of the shipped response network on cars that it has not seen, each by its data sheet, and how
@@ -222,7 +232,12 @@ fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
         in_90: count(|held| held.end_90),
         n: cases.len(),
     };
-    Ok(Found { subject: Measured::ResponseNetwork, tables: vec![rows], held: vec![held] })
+    Ok(Found {
+        subject: Measured::ResponseNetwork,
+        tables: vec![rows],
+        held: vec![held],
+        held_in_all: Vec::new(),
+    })
 }
 
 /// Errors of the shipped force network and of two of its baselines on the test cases, and how often its
@@ -277,7 +292,12 @@ fn force(path: &Path) -> Result<Found, Box<dyn Error>> {
             n,
         });
     }
-    Ok(Found { subject: Measured::ForceNetwork, tables: vec![rows, shares], held })
+    Ok(Found {
+        subject: Measured::ForceNetwork,
+        tables: vec![rows, shares],
+        held,
+        held_in_all: Vec::new(),
+    })
 }
 
 /// A quantity of a case beside its true value.
@@ -325,7 +345,7 @@ pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>
         if scores.is_empty() {
             continue;
         }
-        let (mut rows, mut held) = (Vec::new(), Vec::new());
+        let (mut rows, mut held, mut held_in_all) = (Vec::new(), Vec::new(), Vec::new());
         for (name, quantity, unit) in QUANTITIES {
             let of_case = |score: &&Value| {
                 let all = score["quantities"].as_array()?;
@@ -341,6 +361,11 @@ pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>
                 })
             };
             let scored: Vec<Scored> = scores.iter().filter_map(of_case).collect();
+            if !scored.is_empty() {
+                let [in_50, _, in_90, _] = held_by_level(&scored.iter().collect::<Vec<_>>())?;
+                let (quantity, n) = (quantity.label().to_owned(), scored.len());
+                held_in_all.push(HeldIntervals { quantity, in_50, in_90, n });
+            }
             for (names, part) in &parts {
                 let scored: Vec<&Scored> =
                     scored.iter().filter(|of| names.contains(&of.case)).collect();
@@ -360,7 +385,7 @@ pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>
             }
         }
         let subject = Measured::reconstruction_of(KnownEvidence::deserialize(word)?);
-        found.push(Found { subject, tables: vec![rows], held });
+        found.push(Found { subject, tables: vec![rows], held, held_in_all });
     }
     Ok(found)
 }

@@ -49,6 +49,9 @@ pub struct Measurement {
     /// How often intervals of an answer held the true value.
     #[serde(rename = "held", default, skip_serializing_if = "Vec::is_empty")]
     pub held: Vec<HeldIntervals>,
+    /// The same over all cases, also those that were looked at while the method was set.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub held_in_all: Vec<HeldIntervals>,
 }
 
 /// What a measurement is of.
@@ -97,6 +100,13 @@ pub struct HeldIntervals {
     pub n: usize,
 }
 
+impl HeldIntervals {
+    /// Share of the cases whose interval of 90 % held.
+    pub fn share_in_90(&self) -> f64 {
+        self.in_90 as f64 / self.n.max(1) as f64
+    }
+}
+
 impl Measured {
     /// The measurement of reconstructions from such evidence.
     pub fn reconstruction_of(known: KnownEvidence) -> Self {
@@ -132,8 +142,14 @@ mod tests {
         assert_eq!(measurements.all.len(), 8);
         for measurement in &measurements.all {
             assert!(!measurement.tables.is_empty() && !measurement.probe.is_empty());
-            for held in &measurement.held {
+            for held in measurement.held.iter().chain(&measurement.held_in_all) {
                 assert!(held.in_50 <= held.in_90 && held.in_90 <= held.n, "{held:?}");
+            }
+            for all in &measurement.held_in_all {
+                let of = |held: &&HeldIntervals| held.quantity == all.quantity;
+                let some = measurement.held.iter().find(of).unwrap();
+                let are_fewer = some.in_50 <= all.in_50 && some.in_90 <= all.in_90;
+                assert!(are_fewer && some.n < all.n, "{some:?} {all:?}");
             }
         }
     }

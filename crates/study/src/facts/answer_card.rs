@@ -118,10 +118,9 @@ impl PredictMotionReport {
             Some(_) => Measured::Pairs,
             None => Measured::ResponseNetwork,
         };
-        let share = |of: &HeldIntervals| of.in_90 as f64 / of.n.max(1) as f64;
         let measured = measurement_of(subject, &self.response_model);
         let held = &measured.filter(|_| self.is_measured())?.held;
-        held.iter().min_by(|a, b| share(a).total_cmp(&share(b)))
+        held.iter().min_by(|a, b| a.share_in_90().total_cmp(&b.share_in_90()))
     }
 
     fn change_sentence(&self) -> Value {

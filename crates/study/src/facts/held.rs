@@ -5,6 +5,37 @@ use impactlab_core::numerics::wilson_interval;
 use crate::ModelChoice;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::{HeldIntervals, Measured, Measurement};
+use impactlab_reconstruct::evaluate::KnownEvidence;
+
+/// Share of the truths that an interval of 90 % says that it holds.
+const NINETY: f64 = 0.9;
+
+/// A quantity of an answer whose intervals of 90 % held the truth less often than that when they were tried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldTooSeldom {
+    /// The quantity, with how often they held over all cases.
+    pub held: &'static HeldIntervals,
+    /// Whether more of the evidence was known in these cases than in that of the answer, like which they were
+    /// not counted.
+    pub is_of_everything: bool,
+}
+
+impl HeldTooSeldom {
+    /// What was counted of a quantity in reconstructions from such evidence, or else from all of it; none where
+    /// intervals held often enough, and where nothing was counted.
+    ///
+    /// - `quantity`: its label.
+    pub(super) fn of_reconstruction(known: KnownEvidence, quantity: &str) -> Option<Self> {
+        let of = |known| {
+            let measured = Measurement::shipped(Measured::reconstruction_of(known))?;
+            measured.held_in_all.iter().find(|held| held.quantity == quantity)
+        };
+        let of_everything = || Some((of(KnownEvidence::Everything)?, true));
+        let own = of(known).map(|held| (held, false));
+        let (held, is_of_everything) = own.or_else(of_everything)?;
+        (held.share_in_90() < NINETY).then_some(Self { held, is_of_everything })
+    }
+}
 
 impl Measurement {
     /// How often such intervals held, with the bounds of 95 % confidence; none if it was not counted.
@@ -43,6 +74,20 @@ mod tests {
     use super::*;
     use crate::facts::FactWriter;
     use impactlab_core::units::UnitSystem;
+
+    /// The speeds held; the heading between the cars is too narrow, also where it was counted with more of the
+    /// evidence alone.
+    #[test]
+    fn a_quantity_whose_intervals_held_too_seldom_is_known() {
+        let of = HeldTooSeldom::of_reconstruction;
+        for known in KnownEvidence::ALL {
+            assert_eq!(of(known, "speed of the struck car"), None, "{known:?}");
+            let heading = of(known, "relative heading of the cars").unwrap();
+            assert!(heading.held.share_in_90() < 0.9, "{heading:?}");
+            assert_eq!(heading.is_of_everything, known != KnownEvidence::Everything, "{known:?}");
+        }
+        assert_eq!(of(KnownEvidence::Everything, "friction of the road"), None);
+    }
 
     #[test]
     fn what_held_is_told_with_its_number_and_bounds() {

@@ -31,6 +31,7 @@ mod simulate;
 mod simulate_dataset;
 mod training;
 
+pub use held::HeldTooSeldom;
 pub use table::{Fact, FactTable, TextRow, TextTable, Value};
 pub use term::Term;
 pub use training::{

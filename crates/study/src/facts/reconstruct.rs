@@ -1,11 +1,13 @@
 //! The facts of a reconstruction.
 
 use impactlab_core::units::Quantity;
+use impactlab_reconstruct::evaluate::KnownEvidence;
 use impactlab_reconstruct::{
     BudgetItem, ComparedBy, EvidenceFit, HandCheck, LeftOut, MarkComparison, Mode,
     QuantityEstimate, SpeedChange, SpeedHinge,
 };
 
+use crate::facts::held::HeldTooSeldom;
 use crate::facts::simulate::zones;
 use crate::facts::table::{PREDICTED, RECONSTRUCTED};
 use crate::facts::{Fact, FactTable, Term, Value};
@@ -35,11 +37,20 @@ impl ReconstructReport {
     /// How often such intervals held; none where there are no intervals, and of cars that were followed
     /// through later contacts, and of a single car, on which it was not measured.
     pub fn held_table(&self) -> Option<FactTable> {
-        if self.later_contacts.is_some_and(|later| later.are_followed) {
-            return None;
-        }
-        let measured = Measurement::shipped(Measured::reconstruction_of(self.known?))?;
-        self.has_intervals().then(|| measured.held_table()).flatten()
+        Measurement::shipped(Measured::reconstruction_of(self.known_when_tried()?))?.held_table()
+    }
+
+    /// The quantities whose intervals of 90 % held too seldom when such intervals were tried; likewise.
+    pub fn held_too_seldom(&self) -> Vec<HeldTooSeldom> {
+        let Some(known) = self.known_when_tried() else { return Vec::new() };
+        let of = |of: &QuantityEstimate| HeldTooSeldom::of_reconstruction(known, of.label());
+        self.quantities.iter().filter_map(of).collect()
+    }
+
+    /// What was known where intervals such as these were tried.
+    fn known_when_tried(&self) -> Option<KnownEvidence> {
+        let are_followed = self.later_contacts.is_some_and(|later| later.are_followed);
+        self.known.filter(|_| self.has_intervals() && !are_followed)
     }
 
     /// The quantities with their intervals.

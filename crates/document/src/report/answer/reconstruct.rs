@@ -9,15 +9,18 @@ use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::evidence::evidence_blocks;
 use crate::report::answer::evidence_inputs::evidence_rows;
-use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
+use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of, with_writer};
 use crate::report::answer::stills::reconstruction_still;
 use crate::report::method::Method;
-use crate::report::numbers::fill;
-use crate::report::opinion::opinion_of_reconstruction;
+use crate::report::numbers::{Wording, fill};
+use crate::report::opinion::{PartOpinion, opinion_of_reconstruction};
 use crate::report::parts::{Part, PartPicture};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_reconstruct::ReconstructedQuantity;
-use impactlab_study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
+use impactlab_study::facts::HeldTooSeldom;
+use impactlab_study::{
+    Answer, ReconstructAnswer, ReconstructReport, ReconstructRequest, ReconstructedPaths,
+};
 
 /// Quantities of a collision whose distribution is drawn.
 const DRAWN: [ReconstructedQuantity; 2] =
@@ -57,13 +60,12 @@ pub(super) fn part(
             blocks.push(Block::paragraph(fill(words.too_few_particles, &[("ess", &ess)])));
         }
     }
-    blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
-    let is_doubt = |kind| DOUBTS.contains(&kind) && report.has_intervals();
-    let doubts = report.caveats.iter().filter(|caveat| is_doubt(caveat.kind));
-    let mut doubts: Vec<&str> =
-        doubts.map(|caveat| caveat.kind.label_in(wording.language)).collect();
-    doubts.dedup();
     let mut opinion = opinion_of_reconstruction(report, &question, context);
+    let doubts = doubts(&answer.report, wording);
+    if doubts.is_empty() {
+        blocks.extend(too_narrow(report, &mut opinion, context));
+    }
+    blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
     if !doubts.is_empty() {
         let doubt = fill(words.meaning_doubtful, &[("badges", &doubts.join(", "))]);
         opinion.answer = format!("{} {doubt}", opinion.answer);
@@ -100,6 +102,39 @@ pub(super) fn part(
         },
         ..Part::default()
     }
+}
+
+/// The restrictions with which the intervals of an answer are none, each once.
+fn doubts(report: &Answer<ReconstructReport>, wording: &Wording) -> Vec<&'static str> {
+    let is_doubt = |kind| DOUBTS.contains(&kind) && report.has_intervals();
+    let doubts = report.caveats.iter().filter(|caveat| is_doubt(caveat.kind));
+    let mut doubts: Vec<&str> =
+        doubts.map(|caveat| caveat.kind.label_in(wording.language)).collect();
+    doubts.dedup();
+    doubts
+}
+
+/// Says beside each figure of the opinion whose intervals held too seldom when they were tried how often they
+/// did, and which these are; none where all held.
+fn too_narrow(
+    report: &ReconstructReport,
+    opinion: &mut PartOpinion,
+    context: Context<'_>,
+) -> Option<Block> {
+    let (words, format) = (context.wording.words, context.wording);
+    let item = |HeldTooSeldom { held, is_of_everything }: HeldTooSeldom| {
+        let name = with_writer(context, |writer| (writer.phrase)(&held.quantity));
+        let known = if is_of_everything { words.with_everything_known } else { "" };
+        let (share, n) = (format.percent(held.share_in_90()), held.n.to_string());
+        let values = [("name", &*name), ("share", &*share), ("n", &*n), ("known", known)];
+        if let Some([_, value]) = opinion.figures.iter_mut().find(|[of, _]| *of == name) {
+            value.push_str(&fill(words.held_when_tried, &values));
+        }
+        fill(words.too_narrow_item, &values)
+    };
+    let items: Vec<String> = report.held_too_seldom().into_iter().map(item).collect();
+    let text = || fill(words.too_narrow, &[("list", &items.join("; "))]);
+    (!items.is_empty()).then(|| Block::paragraph(text()))
 }
 
 fn pictures(

@@ -156,6 +156,11 @@ pub(super) const WORDS: Words = Words {
     too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
         Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \
         einzelner Partikel. Mit mehr Partikeln erneut fragen und die Rechnung zu Ende führen.",
+    held_when_tried: "; bei der Erprobung{known} trafen solche Bereiche in {share} von {n} Fällen zu",
+    with_everything_known: " mit allen Anknüpfungstatsachen",
+    too_narrow: "Diese Bereiche von 90 % sind als zu schmal anzusehen, da sie bei der Erprobung zu selten zutrafen \
+        (Abschnitt 7): {list}.",
+    too_narrow_item: "{name}, in {share} von {n} Fällen{known}",
     particles: "Partikel:",
     simulated_motions: "simulierte Bewegungen:",
     ess: "effektiver Stichprobenumfang:",

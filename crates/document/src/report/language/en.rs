@@ -150,6 +150,11 @@ pub(super) const WORDS: Words = Words {
     too_few_particles: "No interval is given: the sample is equivalent to only {ess} independent draws, or the run was \
         stopped before the evidence had its full weight, so that the ends of an interval would rest on single \
         draws. Ask again with more particles, and let the run end.",
+    held_when_tried: "; when tried{known}, such intervals held in {share} of {n} cases",
+    with_everything_known: " with all of the evidence known",
+    too_narrow: "Take these intervals of 90 % as too narrow, since they held too seldom when they were tried (section 7): \
+        {list}.",
+    too_narrow_item: "{name}, in {share} of {n} cases{known}",
     particles: "particles:",
     simulated_motions: "simulated motions:",
     ess: "effective sample size:",
