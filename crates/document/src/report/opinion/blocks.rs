@@ -193,6 +193,9 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         blocks.push(Block::paragraph(words.not_counted));
     }
     let known = if is_counted { words.known_error } else { words.known_error_uncounted };
+    if is_counted && methods_of(spoken).contains(&Method::ContactLaw) {
+        blocks.push(Block::paragraph(words.held_without_network));
+    }
     let errors = [known, words.known_error_single_car, words.known_error_driven];
     blocks.extend(of_kinds(&methods_of(spoken), errors).map(Block::paragraph));
     blocks
@@ -315,27 +318,45 @@ mod tests {
         assert!(told.contains("1 m") && told.contains("2 m"), "{told}");
     }
 
-    /// “The intervals were tried …; the bounds are those of 95 % confidence” stood below “it was not counted”.
-    #[test]
-    fn intervals_that_were_not_counted_are_not_said_to_have_been_tried() {
+    /// What the opinion says of how often intervals of an answer held.
+    ///
+    /// - `table`: what was counted.
+    fn told_of_held(rank: Rank, table: Option<Block>, methods: &[Method]) -> String {
         let part = Part {
             opinion: Some(PartOpinion {
-                rank: Rank::Simulation,
+                rank,
                 question: "How does it move?".to_owned(),
                 answer: "1 m".to_owned(),
                 courses: Vec::new(),
                 figures: Vec::new(),
-                held: None,
+                held: table,
                 hinges: Vec::new(),
             }),
-            methods: [Method::Impact, Method::FourDof].into(),
+            methods: methods.iter().copied().collect(),
             ..Part::default()
         };
         let variant =
             VariantParts { name: "a".to_owned(), notes: String::new(), answers: vec![Ok(part)] };
         let (variants, wording) = ([variant], Wording::english(UnitSystem::Si));
-        let told = format!("{:?}", held(&spoken(&variants), &wording));
+        format!("{:?}", held(&spoken(&variants), &wording))
+    }
+
+    /// “The intervals were tried …; the bounds are those of 95 % confidence” stood below “it was not counted”.
+    #[test]
+    fn intervals_that_were_not_counted_are_not_said_to_have_been_tried() {
+        let told = told_of_held(Rank::Simulation, None, &[Method::Impact, Method::FourDof]);
         assert!(told.contains("it was not counted"), "{told}");
         assert!(!told.contains("were tried") && !told.contains("confidence"), "{told}");
+    }
+
+    /// Section 7 alone said that the pairs were computed without the force network.
+    #[test]
+    fn what_was_counted_without_the_force_network_is_said_to_be_so() {
+        let table = || Some(Block::paragraph("48 of 48"));
+        let with_contact = [Method::ResponseNetwork, Method::ContactLaw, Method::ForceNetwork];
+        let told = told_of_held(Rank::Forecast, table(), &with_contact);
+        assert!(told.contains("without the force network"), "{told}");
+        let told = told_of_held(Rank::Forecast, table(), &[Method::ResponseNetwork]);
+        assert!(!told.contains("without the force network"), "{told}");
     }
 }

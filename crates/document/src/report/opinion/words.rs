@@ -23,6 +23,7 @@ pub(super) struct OpinionWords {
     pub not_counted: &'static str,
     pub known_error: &'static str,
     pub known_error_uncounted: &'static str,
+    pub held_without_network: &'static str,
     pub known_error_single_car: &'static str,
     pub known_error_driven: &'static str,
     pub hinges: &'static str,
@@ -92,6 +93,9 @@ const EN: OpinionWords = OpinionWords {
         confidence.",
     known_error_uncounted: "The known errors of the models are in section 7. The method was not validated against real \
         collisions.",
+    held_without_network: "These intervals are those of motions by the contact law from the first touch on, without the \
+        force network, of drivers whose conduct was known: what force network and open drivers add to the error of this \
+        answer is not in them.",
     known_error_single_car: "The method was tried on single cars that the program simulated itself, and was not \
         validated against real ones; what is known of its model stands in section 7.",
     known_error_driven: "The model was compared with multibody models of cars; its known errors are in section 7. It was \
@@ -164,6 +168,9 @@ const DE: OpinionWords = OpinionWords {
         mit einer Sicherheit von 95 %.",
     known_error_uncounted: "Die bekannten Fehler der Modelle stehen in Abschnitt 7. Das Verfahren ist nicht an realen \
         Unfällen validiert.",
+    held_without_network: "Gezählt wurde an Bewegungen nach dem Kontaktgesetz von der ersten Berührung an, ohne Kraftnetz \
+        und mit bekanntem Verhalten der Fahrer: was Kraftnetz und offenes Verhalten zum Fehler dieser Antwort beitragen, \
+        ist darin nicht enthalten.",
     known_error_single_car: "Das Verfahren wurde an einzelnen Fahrzeugen geprüft, die das Programm selbst berechnet \
         hat, und ist nicht an realen validiert; was von seinem Modell bekannt ist, steht in Abschnitt 7.",
     known_error_driven: "Das Modell wurde mit Mehrkörpermodellen von Fahrzeugen verglichen; seine bekannten Fehler stehen \
