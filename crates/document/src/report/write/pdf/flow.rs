@@ -20,6 +20,11 @@ const BODY_PT: f32 = 11.0;
 pub(super) const CAPTION_PT: f32 = 9.5;
 /// Room below a heading that keeps it from the foot of a page, points.
 const BELOW_HEADING_PT: f32 = 72.0;
+/// Distance of the text of an item from the left edge of the text, points.
+const ITEM_PT: f32 = 12.0;
+/// Lines of a text that stand together at the foot of a page and at the top of the next one; a text that is
+/// too short for both is not divided.
+const KEPT_LINES: usize = 2;
 
 /// What a part of the document is, for readers that cannot see the page.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,13 +145,14 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// Sets a text line by line, over pages if need be.
+    /// Sets a text line by line, over pages if need be; no line of it stands alone on a page.
     pub fn text(&mut self, text: &str, style: Style, owner: Owner) {
         let width_pt = self.size_pt[0] - MARGIN_PT - style.left_pt;
         let step_pt = style.size_pt * LEADING;
-        for line in lines(text, self.fonts, style.size_pt, width_pt) {
-            self.need(step_pt);
-            self.line(&line, style, owner);
+        let lines = lines(text, self.fonts, style.size_pt, width_pt);
+        for (idx, line) in lines.iter().enumerate() {
+            self.need(kept_lines(idx, lines.len()) as f32 * step_pt);
+            self.line(line, style, owner);
             self.y_pt += step_pt;
         }
     }
@@ -200,7 +206,7 @@ impl<'a> Flow<'a> {
             let lines = lines(text, self.fonts, BODY_PT, self.width_pt() - left_pt);
             lines.len() as f32 * BODY_PT * LEADING
         };
-        let list_pt: f32 = items.iter().map(|item| height_pt(item, 12.0) + 1.5).sum();
+        let list_pt: f32 = items.iter().map(|item| height_pt(item, ITEM_PT) + 1.5).sum();
         let paragraph_pt = |block: &Block| match block {
             Block::Paragraph { text } => Some(height_pt(text, 0.0) + 4.0),
             _ => None,
@@ -245,15 +251,16 @@ impl<'a> Flow<'a> {
         let step_pt = style.size_pt * LEADING;
         let width_pt = self.width_pt();
         self.space(2.0);
-        for line in lines(text, self.fonts, style.size_pt, width_pt - 16.0) {
-            self.need(step_pt);
+        let lines = lines(text, self.fonts, style.size_pt, width_pt - 16.0);
+        for (idx, line) in lines.iter().enumerate() {
+            self.need(kept_lines(idx, lines.len()) as f32 * step_pt);
             let rect_pt = [MARGIN_PT, self.y_pt, width_pt, step_pt];
             self.push(Item::Fill { rect_pt, ink: Ink::WarningShade });
             self.push(Item::Fill {
                 rect_pt: [MARGIN_PT, self.y_pt, 3.0, step_pt],
                 ink: Ink::Warning,
             });
-            self.line(&line, style, owner);
+            self.line(line, style, owner);
             self.y_pt += step_pt;
         }
         self.space(6.0);
@@ -264,13 +271,29 @@ impl<'a> Flow<'a> {
         for item in items {
             let entry = self.part(Role::ListItem, list);
             let owner = self.part(Role::ListBody, entry);
-            self.need(body.size_pt * LEADING);
+            let n_lines = lines(item, self.fonts, body.size_pt, self.width_pt() - ITEM_PT).len();
+            let step_pt = body.size_pt * LEADING;
+            // The point stands on the page of the first line.
+            self.need(kept_lines(0, n_lines) as f32 * step_pt);
             let y_pt = self.y_pt + 0.62 * body.size_pt;
             self.push(Item::Fill { rect_pt: [MARGIN_PT + 3.0, y_pt, 2.5, 2.5], ink: Ink::Muted });
-            self.text(item, Style { left_pt: MARGIN_PT + 12.0, ..body }, owner);
+            self.text(item, Style { left_pt: MARGIN_PT + ITEM_PT, ..body }, owner);
             self.space(1.5);
         }
         self.space(4.0);
+    }
+}
+
+/// How many lines of a text stay together from one on.
+///
+/// - `idx`: number of the line;
+/// - `n_lines`: lines of the text.
+fn kept_lines(idx: usize, n_lines: usize) -> usize {
+    match idx {
+        0 if n_lines < 2 * KEPT_LINES => n_lines,
+        0 => KEPT_LINES,
+        _ if n_lines >= 2 * KEPT_LINES && idx + KEPT_LINES == n_lines => KEPT_LINES,
+        _ => 1,
     }
 }
 
@@ -342,6 +365,40 @@ mod tests {
             assert!(top >= 50.0 && bottom <= height_pt - HIGH_MARGIN_PT + 1.0, "{item:?}");
         }
         assert!(headers > 10, "the header of the table is repeated {headers} times");
+    }
+
+    /// The last line of a paragraph stood alone at the top of a page, and the first one at the foot.
+    #[test]
+    fn no_line_of_a_text_stands_alone_on_a_page() {
+        const WORD: &str = "wordofaline";
+        let fonts = Fonts::load().unwrap();
+        let n_lines = |page: &PageItems| {
+            let is_line =
+                |item: &&Item| matches!(item, Item::Text { text, .. } if text.starts_with(WORD));
+            page.items.iter().filter(is_line).count()
+        };
+        let is_point =
+            |item: &Item| matches!(item, Item::Fill { rect_pt: [_, _, w, _], .. } if *w == 2.5);
+        for (n_above, n_words) in (33..41).flat_map(|n| [9, 16, 23, 30].map(|of| (n, of))) {
+            let text = vec![WORD; n_words].join(" ");
+            for block in [
+                Block::paragraph(text.clone()),
+                Block::notice(text.clone()),
+                Block::List { items: vec![text] },
+            ] {
+                let is_list = matches!(block, Block::List { .. });
+                let mut blocks = vec![Block::paragraph("above"); n_above];
+                blocks.push(block);
+                let document =
+                    ReportDocument { title: "short".to_owned(), ..document(Paper::A4, blocks) };
+                let flow = Flow::from_document(&document, &fonts).unwrap();
+                let parts: Vec<usize> = flow.pages.iter().map(n_lines).filter(|n| *n > 0).collect();
+                let is_kept = parts.len() == 1 || parts.iter().all(|n| *n >= KEPT_LINES);
+                assert!(is_kept, "{n_above} above, {n_words} words: {parts:?} lines");
+                let first = flow.pages.iter().find(|page| n_lines(*page) > 0).unwrap();
+                assert_eq!(first.items.iter().any(is_point), is_list, "{n_above}, {n_words}");
+            }
+        }
     }
 
     /// The place for a signature stood alone on the second page of an opinion.
