@@ -105,6 +105,11 @@ fn said_table(caption: &str, rows: &[&InputRow], wording: &Wording) -> Block {
         }));
     }
     let (quantity, value) = (words.quantity, words.value);
+    let is_single = |[_, _, _, other, _]: &[String; 5]| other.is_empty();
+    if cells.iter().all(is_single) {
+        let cells = cells.into_iter().map(|[of, label, value, ..]| [of, label, value]).collect();
+        return Block::Table(Table::new(caption, [words.holds_for, quantity, value], cells));
+    }
     let columns = [words.holds_for, quantity, value, quantity, value];
     Block::Table(Table::new(caption, columns, cells))
 }
