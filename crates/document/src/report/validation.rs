@@ -14,6 +14,9 @@ use impactlab_study::{Measured, Measurement, ValidationTable};
 /// Beginnings of lines about methods that answer nothing.
 const OTHER_METHODS: [&str; 2] = ["| classic pulse |", "| Gaussian processes |"];
 
+/// The column of the method, which says nothing where all lines are of one: the heading above the table names it.
+const METHOD: &str = "method";
+
 /// What a method was compared with: a paragraph, and tables with their captions. Of a method that the opinion
 /// does not rest on the paragraph alone.
 pub(super) fn validation_blocks(
@@ -65,12 +68,15 @@ pub(super) fn validation_blocks(
 
 /// The lines as a table.
 fn table(caption: &str, published: &ValidationTable, wording: &Wording) -> Table {
-    let cells = |line: &str| -> Vec<String> {
-        let inner = line.trim().trim_start_matches('|').trim_end_matches('|');
-        inner.split('|').map(|cell| wording.validation_cell(cell.trim())).collect()
-    };
     let is_shown = |line: &&String| !OTHER_METHODS.iter().any(|other| line.starts_with(other));
-    let mut lines = published.lines.iter().filter(is_shown).map(|line| cells(line));
+    let lines: Vec<Vec<&str>> =
+        published.lines.iter().filter(is_shown).map(|line| raw_cells(line)).collect();
+    let of_one_method = column_of_one_method(&lines);
+    let cells = |line: Vec<&str>| -> Vec<String> {
+        let told = line.iter().enumerate().filter(|(idx, _)| Some(*idx) != of_one_method);
+        told.map(|(_, cell)| wording.validation_cell(cell)).collect()
+    };
+    let mut lines = lines.into_iter().map(cells);
     let header = lines.next().unwrap_or_default();
     let n = header.len();
     let column = |title| Column { title, is_numeric: false };
@@ -80,6 +86,23 @@ fn table(caption: &str, published: &ValidationTable, wording: &Wording) -> Table
     });
     let caption = caption.to_owned();
     Table { caption, columns: header.into_iter().map(column).collect(), rows: rows.collect() }
+}
+
+/// The cells of a line.
+fn raw_cells(line: &str) -> Vec<&str> {
+    let inner = line.trim().trim_start_matches('|').trim_end_matches('|');
+    inner.split('|').map(str::trim).collect()
+}
+
+/// The column of the method if all lines are of one.
+///
+/// - `lines`: header and rows.
+fn column_of_one_method(lines: &[Vec<&str>]) -> Option<usize> {
+    let (header, rows) = lines.split_first()?;
+    let column = header.iter().position(|title| *title == METHOD)?;
+    let mut methods = rows.iter().map(|row| row.get(column));
+    let first = methods.next()?;
+    methods.all(|method| method == first).then_some(column)
 }
 
 impl Wording {
@@ -109,6 +132,24 @@ mod tests {
         for (text, part) in told {
             assert!(text.contains(&**part), "{part:?} is not said");
         }
+    }
+
+    /// A column of eleven said “reconstruction” in every row below a heading that says so.
+    #[test]
+    fn the_method_of_all_lines_is_not_told_in_each() {
+        let wording = Wording::english(impactlab_core::units::UnitSystem::Si);
+        let lines = |methods: [&str; 2]| {
+            let rows = methods.map(|method| format!("| speed | {method} | 2.4 |"));
+            let header = "| quantity | method | bias |".to_owned();
+            let lines = std::iter::once(header).chain(rows).collect();
+            table("", &ValidationTable { heading: String::new(), lines }, &wording)
+        };
+        let alike = lines(["reconstruction"; 2]);
+        assert_eq!(
+            (alike.columns.len(), &alike.rows[0][..]),
+            (2, &["speed", "2.4"].map(str::to_owned)[..])
+        );
+        assert_eq!(lines(["reconstruction", "swarm"]).columns.len(), 3);
     }
 
     #[test]

@@ -28,9 +28,15 @@ struct Cell {
     line_pt: f32,
 }
 
-/// Widths of the columns that are together the width of the table, points.
-pub(super) fn widths_of(table: &Table, style: CellStyle, fonts: &Fonts, width_pt: f32) -> Vec<f32> {
-    let n = table.columns.len();
+/// Whether the longest words of the columns stand beside each other, all but those for which no column is wide
+/// enough.
+pub(super) fn fits_words(table: &Table, style: CellStyle, fonts: &Fonts, width_pt: f32) -> bool {
+    let rows = rows_of(table, style, fonts);
+    least_widths(&rows, table.columns.len(), style, width_pt).iter().sum::<f32>() <= width_pt
+}
+
+/// The cells of the titles and of all rows.
+fn rows_of(table: &Table, style: CellStyle, fonts: &Fonts) -> Vec<Vec<Cell>> {
     let space_pt = style.size_pt * fonts.width(" ");
     let cell = |text: &str| {
         let words_pt: Vec<f32> =
@@ -39,17 +45,33 @@ pub(super) fn widths_of(table: &Table, style: CellStyle, fonts: &Fonts, width_pt
         let line_pt = words_pt.iter().sum::<f32>() + gaps_pt;
         Cell { words_pt, line_pt }
     };
+    let n = table.columns.len();
     let titles = table.columns.iter().map(|Column { title, .. }| cell(title)).collect();
     let rows = table.rows.iter().map(|row| row.iter().take(n).map(|text| cell(text)).collect());
-    let rows: Vec<Vec<Cell>> = std::iter::once(titles).chain(rows).collect();
-    let of_column = |idx: usize, size: &dyn Fn(&Cell) -> f32| {
-        let widest = rows.iter().filter_map(|row| row.get(idx)).map(size).fold(8.0, f32::max);
-        widest + 2.0 * style.padding_pt + 0.5
-    };
+    std::iter::once(titles).chain(rows).collect()
+}
+
+/// Width of a column by the widest of its cells, points.
+fn column_pt(rows: &[Vec<Cell>], idx: usize, style: CellStyle, size: &dyn Fn(&Cell) -> f32) -> f32 {
+    let widest = rows.iter().filter_map(|row| row.get(idx)).map(size).fold(8.0, f32::max);
+    widest + 2.0 * style.padding_pt + 0.5
+}
+
+/// Widths of the columns for their longest words, points.
+fn least_widths(rows: &[Vec<Cell>], n: usize, style: CellStyle, width_pt: f32) -> Vec<f32> {
     let widest_word = |cell: &Cell| cell.words_pt.iter().copied().fold(0.0, f32::max);
-    let wanted: Vec<f32> = (0..n).map(|idx| of_column(idx, &|cell| cell.line_pt)).collect();
-    let least: Vec<f32> =
-        (0..n).map(|idx| of_column(idx, &widest_word).min(WIDEST_WORD * width_pt)).collect();
+    let least = |idx: usize| column_pt(rows, idx, style, &widest_word).min(WIDEST_WORD * width_pt);
+    (0..n).map(least).collect()
+}
+
+/// Widths of the columns that are together the width of the table, points.
+pub(super) fn widths_of(table: &Table, style: CellStyle, fonts: &Fonts, width_pt: f32) -> Vec<f32> {
+    let n = table.columns.len();
+    let space_pt = style.size_pt * fonts.width(" ");
+    let rows = rows_of(table, style, fonts);
+    let wanted: Vec<f32> =
+        (0..n).map(|idx| column_pt(&rows, idx, style, &|cell| cell.line_pt)).collect();
+    let least = least_widths(&rows, n, style, width_pt);
     let widths = column_widths(&wanted, &least, width_pt);
     let (all_wanted, all_least): (f32, f32) = (wanted.iter().sum(), least.iter().sum());
     if all_wanted <= width_pt || all_least >= width_pt {
@@ -106,6 +128,23 @@ fn with_moved(widths: &[f32], [from, to]: [usize; 2], step_pt: f32) -> Vec<f32> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// “Medianfe hler” stood in the table of eleven columns of a reconstruction.
+    #[test]
+    fn words_that_are_too_wide_for_their_columns_fit_in_smaller_letters() {
+        let fonts = Fonts::load().unwrap();
+        let fits = |size_pt| {
+            let style = CellStyle { size_pt, padding_pt: 3.5 };
+            let words = ["Annäherungsgeschwindigkeit", "Rechnungen", "(84–100)", "Medianfehler"];
+            let row = [words; 2].concat();
+            let columns =
+                row.iter().map(|title| Column { title: (*title).to_owned(), is_numeric: false });
+            let table =
+                Table { caption: String::new(), columns: columns.collect(), rows: Vec::new() };
+            fits_words(&table, style, &fonts, 499.0)
+        };
+        assert!(!fits(9.5) && fits(6.5));
+    }
 
     /// A short column had as much room as it liked, and long ones took three lines for two.
     #[test]
