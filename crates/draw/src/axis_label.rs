@@ -10,19 +10,20 @@ use impactlab_document::figure::Axis;
 /// By how much of its height a text stands further left than its axis, as egui_plot has it.
 const GAP: f32 = 0.25;
 
-/// The text beside an upright axis; where it is longer than the plot is high, its unit alone, as the
-/// heading above the plot names the quantity.
+/// The text beside an upright axis, or what stands before its comma; where that is longer than the plot is
+/// high, its unit alone, as the heading above the plot or the caption below it names the quantity.
 pub(crate) fn label_that_fits(ui: &Ui, axis: &Axis, room: f32) -> String {
-    match fits(ui, &axis.text(), room) || axis.unit.symbol.is_empty() {
-        true => shortened(ui, axis, room),
-        false => format!("[{}]", axis.unit.symbol),
+    match whole(ui, axis, room) {
+        Some(text) => text,
+        None if axis.unit.symbol.is_empty() => shortened(ui, axis, room),
+        None => format!("[{}]", axis.unit.symbol),
     }
 }
 
-/// The text of an axis; where it is longer than its room, with its end cut off before the unit.
+/// The text of an axis, or what stands before its comma; where that is longer than its room, with its end cut
+/// off before the unit.
 pub(crate) fn shortened(ui: &Ui, axis: &Axis, room: f32) -> String {
-    let text = axis.text();
-    if fits(ui, &text, room) {
+    if let Some(text) = whole(ui, axis, room) {
         return text;
     }
     let unit = match axis.unit.symbol {
@@ -35,6 +36,14 @@ pub(crate) fn shortened(ui: &Ui, axis: &Axis, room: f32) -> String {
     };
     let mut shorter = (1..axis.label.chars().count()).rev().map(cut);
     shorter.find(|text| fits(ui, text, room)).unwrap_or_default()
+}
+
+/// The text of an axis, or its first words, such as “Y [m]” for “Y, to the left [m]”; `None` if there is no room
+/// for either.
+fn whole(ui: &Ui, axis: &Axis, room: f32) -> Option<String> {
+    let brief = axis.label.split_once(", ").map(|(brief, _)| brief.to_owned());
+    let brief = brief.map(|label| Axis { label, ..axis.clone() }.text());
+    std::iter::once(axis.text()).chain(brief).find(|text| fits(ui, text, room))
 }
 
 /// The part of an upright axis that is seen where a scroll area ends within it; `None` of an axis that is
@@ -94,6 +103,10 @@ mod tests {
             assert_eq!(label_that_fits(ui, &speed, 120.0), "[km/h]");
             let cut = label_that_fits(ui, &pure, 120.0);
             assert!(cut.starts_with("speed") && cut.ends_with('…'), "{cut}");
+            // “[m]” alone stood beside the plan of a reconstruction.
+            let place = Axis::shown("Y, to the left", Quantity::Length, UnitSystem::Si);
+            assert_eq!(label_that_fits(ui, &place, 1000.0), "Y, to the left [m]");
+            assert_eq!([label_that_fits, shortened].map(|of| of(ui, &place, 60.0)), ["Y [m]"; 2]);
         })
         .unwrap();
     }
