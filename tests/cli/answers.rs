@@ -183,10 +183,7 @@ fn a_recording_without_rates_says_with_which_it_is_simulated() {
     let bare = write(&folder, "bare.csv", &bare.collect::<String>());
     let report = answer(&["simulate", "--trajectory", text(&bare)]);
     let printed = report["assumptions"].to_string();
-    assert!(
-        printed.contains("start_of_record") && printed.contains("Yaw rate r = 0"),
-        "{printed}"
-    );
+    assert!(printed.contains("start_of_record") && printed.contains("Yaw rate r = 0"), "{printed}");
 }
 
 #[test]

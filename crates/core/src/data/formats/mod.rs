@@ -20,6 +20,7 @@ mod parquet_file;
 mod positions;
 mod recorder;
 mod recorder_columns;
+mod recorder_contradictions;
 mod recorder_table;
 #[cfg(test)]
 mod sample_tests;

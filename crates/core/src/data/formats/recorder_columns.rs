@@ -32,7 +32,7 @@ const TO_RIGHT: [&str; 7] = [
 ];
 
 /// The side to which a column says that it is positive.
-fn stated_side(name: &str) -> Option<RecordedSide> {
+pub(super) fn stated_side(name: &str) -> Option<RecordedSide> {
     let key = letters_and_digits(name);
     match () {
         () if has(&key, &TO_LEFT) => Some(RecordedSide::Left),
@@ -58,7 +58,7 @@ pub(super) fn is_of_road_wheels(key: &str) -> bool {
 }
 
 impl Table563<'_> {
-    fn keys(&self) -> Vec<String> {
+    pub(super) fn keys(&self) -> Vec<String> {
         let bare = |name: &String| {
             letters_and_digits(name.rsplit_once('[').map_or(name.as_str(), |(bare, _)| bare))
         };

@@ -33,7 +33,7 @@ const TIRES_M_S2: f64 = 12.0;
 const COVERED_S: [f64; 2] = [0.1, 60.0];
 
 /// Rounding of a recorded speed, m/s: 1 mph and its halves.
-const ROUNDING_M_S: f64 = 0.6;
+pub(super) const ROUNDING_M_S: f64 = 0.6;
 
 impl RecorderRecord {
     /// Adds what the columns of a table hold.
@@ -55,7 +55,9 @@ impl RecorderRecord {
             let usual = (words == "lateral").then_some(RecordedSide::Right);
             let found = table.sided(Quantity::Speed, usual, &mut doubts, is_wanted);
             let Some((values, side)) = found else { continue };
+            doubts.extend(table.other_ends(&time_s, is_wanted, name));
             let pairs = delta_v_pairs(&time_s, &values);
+            doubts.extend(table.other_largest(&pairs, words, name));
             if let Some(why) = no_delta_v(&pairs) {
                 doubts.push(format!("the change of velocity {name} {why}; it is left out"));
                 continue;
@@ -233,7 +235,7 @@ fn wrong_span(time_s: &[f64]) -> Option<String> {
 }
 
 /// Times and changes of velocity of a record after the recorder has woken up.
-fn delta_v_pairs(time_s: &[Option<f64>], values: &[Option<f64>]) -> Vec<(f64, f64)> {
+pub(super) fn delta_v_pairs(time_s: &[Option<f64>], values: &[Option<f64>]) -> Vec<(f64, f64)> {
     let pairs = time_s.iter().zip(values).filter_map(|(at_s, value)| at_s.zip(*value));
     let is_in_range = |(at_s, value): &(f64, f64)| *at_s >= 0.0 && SPEED.contains(*value);
     pairs.filter(is_in_range).collect()
@@ -241,7 +243,7 @@ fn delta_v_pairs(time_s: &[Option<f64>], values: &[Option<f64>]) -> Vec<(f64, f6
 
 /// Why a record of the change of velocity is that of no crash, in words: its times are not those of one, it does
 /// not begin with the impact, or it was filled up with zeros or a number that stands for none.
-fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
+pub(super) fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
     let (first_s, first) = *pairs.first()?;
     let (at_s, largest) = largest_of(pairs)?;
     let (end_s, last) = *pairs.last()?;
@@ -277,7 +279,7 @@ fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
 }
 
 /// The value of a record that is largest in size, with its instant.
-fn largest_of(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
+pub(super) fn largest_of(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
     pairs.iter().copied().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
 }
 
@@ -306,7 +308,7 @@ fn beyond_tires(time_s: &[f64], speed_m_s: &[f64]) -> Option<String> {
 }
 
 /// The last change of velocity of a record; `None` of one that ends where it begins, at 0 s.
-fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
+pub(super) fn recorded_delta_v(pairs: &[(f64, f64)]) -> Option<RecordedDeltaV> {
     let (ends_s, delta_v_m_s) = *pairs.last().filter(|(ends_s, _)| *ends_s > 0.0)?;
     let earlier = pairs.iter().rev().find(|(at_s, _)| ends_s - at_s >= SETTLED_S - 1e-9);
     // Before the recorder woke up nothing had changed.

@@ -214,6 +214,25 @@ fn a_change_of_velocity_that_is_none_of_one_crash_is_refused() {
     }
 }
 
+/// Which of two columns was read was said, and not that they contradict each other; nor was that of a column
+/// with the largest change.
+#[test]
+fn columns_of_a_change_of_velocity_that_contradict_each_other_are_said() {
+    let doubts = |other: &str, end: &str| {
+        let text = format!(
+            "Time [ms],Delta-V Longitudinal [km/h],{other} [km/h]\n\
+             0,0,0\n50,-16,-9\n100,-30,-14\n120,-32,{end}\n"
+        );
+        let record = read(&text, None).unwrap();
+        assert!((record.delta_v_ahead.unwrap().delta_v_m_s + 32.0 / 3.6).abs() < 1e-9);
+        record.doubts.iter().filter(|doubt| doubt.contains("contradict")).count()
+    };
+    let second = "Delta-V Longitudinal of the Second Sensor";
+    assert_eq!([doubts(second, "-15"), doubts(second, "-31")], [1, 0]);
+    let largest = "Maximum Delta-V Longitudinal";
+    assert_eq!([doubts(largest, "-15"), doubts(largest, "-33")], [1, 0]);
+}
+
 #[test]
 fn a_change_of_velocity_that_goes_back_is_said() {
     let is_said = |last: &str| {
