@@ -197,6 +197,7 @@ impl App {
         let (has_paths, is_restored) = (!paths.is_empty(), restored.is_some());
         let (mut state, last_open) = restored.unwrap_or_default();
         state.session.tasks.wake(cc.egui_ctx.clone());
+        state.session.keeps_state = store.is_some();
         if let Some(message) = message {
             state.say(Severity::Warning, message);
         }
@@ -343,6 +344,7 @@ impl App {
         let Self { state, store: Some(store), state_text, is_storable, .. } = self else { return };
         let saved = state_text.update(state);
         let was_storable = std::mem::replace(is_storable, saved.is_ok());
+        state.session.keeps_state = saved.is_ok();
         match saved {
             Ok(text) => {
                 if let Some(failure) = store.keep(text, context) {

@@ -6,7 +6,7 @@ use std::path::Path;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Network, Output, Pane, State, Subject};
+use impactlab::app::{App, CaseCommand, Command, Leaving, Network, Output, Pane, State, Subject};
 use impactlab_core::data::Severity;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -145,6 +145,30 @@ fn a_second_window_says_that_it_stores_nothing_and_stores_nothing() {
     step_until(&mut third, "the change", move |_| {
         fs::read_to_string(&state_file).expect("a state").contains("\"duration_s\":1.25")
     });
+}
+
+#[test]
+fn a_window_that_keeps_nothing_asks_about_a_case_without_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let state_file = folder.path().join("state.json");
+    let mut first = open_and_store(&state_file);
+    let mut second = open_with(&[SCENARIO], Some(state_file));
+    for harness in [&mut first, &mut second] {
+        harness.state_mut().state_mut().project.simulate.duration_s = 1.25;
+        step_until(harness, "the change", is_idle);
+        assert!(state(harness).is_case_changed() && state(harness).case.path.is_none());
+    }
+    let reasons = |harness: &Harness<'_, App>| state(harness).reasons_to_stay(&Leaving::Quit);
+    assert_eq!(reasons(&first), [""; 0], "it is there again at the next start");
+    let told = reasons(&second);
+    assert!(told.iter().any(|why| why.contains("keeps nothing for the next start")), "{told:?}");
+
+    apply(&mut second, Command::Case(CaseCommand::Leave(Leaving::Quit)));
+    second.run_steps(3);
+    second.get_by_label("Quit impactlab?");
+    second.get_by_label("Stay").click();
+    second.run_steps(3);
+    assert!(!state(&second).session.may_close);
 }
 
 #[test]

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Output, ReplayStatus, State};
+use impactlab::app::{App, Command, Output, Pane, ReplayStatus, State};
+use impactlab_core::collision::ContactLocation;
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
@@ -145,7 +146,7 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     assert!(harness.query_all_by_label_contains("x -1.5 m").count() > 0, "and its value");
     assert!(harness.query_all_by_label("Change").count() > 0);
     // The user enters both in the vehicle pane instead.
-    apply(&mut harness, Command::Show(impactlab::app::Pane::Vehicle));
+    apply(&mut harness, Command::Show(Pane::Vehicle));
     harness.run_steps(2);
     assert_eq!(harness.query_all_by_label("Set").count(), 2);
     harness.state_mut().state_mut().project.start_mut().speed_m_s = Some(15.0);
@@ -210,7 +211,7 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
         Some(state_file.clone()),
     );
     step_until(&mut harness, "the first case", shows("c001"));
-    apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
+    apply(&mut harness, Command::Show(Pane::Scenario));
     step_until(&mut harness, "the solution", |state| state.session.impact.ok().is_some());
     harness.get_by_label_contains("Contact and impulse");
     harness.get_by_label("Simulate in the scene").click();
@@ -309,6 +310,40 @@ fn data_that_are_opened_leave_the_answers_to_other_questions_as_they_are() {
         is_read && is_idle(state) && state.session.analysis.ok().is_some()
     });
     assert!(!Arc::ptr_eq(&before, &answer(&harness)));
+}
+
+#[test]
+fn a_simulation_that_fails_leaves_no_forecast_of_an_earlier_one() {
+    let mut harness = open(&["assets/scenarios/pit_right_rear.toml"]);
+    step_until(&mut harness, "the forecasts", |state| {
+        let session = &state.session;
+        let is_told =
+            session.response.forecast.ok().is_some() && session.force.forecast.ok().is_some();
+        is_idle(state) && is_told && !session.is_waiting()
+    });
+    let outcome = |harness: &Harness<'_, App>| {
+        let chain = state(harness).chain();
+        let link = chain.into_iter().find(|link| link.title == "Outcome").expect("an outcome");
+        link.figure
+    };
+    assert!(outcome(&harness).is_some());
+
+    // The striking vehicle is moved to where it meets nothing.
+    let project = &mut harness.state_mut().state_mut().project;
+    let scenario = project.impact.scenario.inline_mut().expect("a scenario that is not a file");
+    scenario.contact.location =
+        ContactLocation::Footprints { striking_x_world_m: -40.0, striking_y_world_m: 0.0 };
+    step_until(&mut harness, "the refusal", |state| {
+        is_idle(state) && state.session.analysis.problem().is_some() && !state.session.is_waiting()
+    });
+    let session = &state(&harness).session;
+    assert!(session.response.forecast.ok().is_none(), "a forecast of another collision is shown");
+    assert!(session.force.forecast.ok().is_none(), "a force of another collision is shown");
+    assert_eq!(outcome(&harness), None);
+    apply(&mut harness, Command::Show(Pane::ForcePrediction));
+    harness.run_steps(4);
+    harness.get_by_label_contains("There is no collision to predict");
+    assert!(harness.query_by_label("Predicting…").is_none());
 }
 
 #[test]

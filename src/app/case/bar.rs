@@ -18,7 +18,14 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
             let mark = if is_changed { " •" } else { "" };
             let path = state.case.path.as_ref().map(|path| path.display().to_string());
             let hint = match (&path, is_changed) {
-                (None, _) => "This case has no file yet. It is kept for the next start.".to_owned(),
+                (None, _) if state.session.keeps_state => {
+                    "This case has no file yet. It is kept for the next start.".to_owned()
+                }
+                (None, _) => {
+                    "This case has no file yet, and this window keeps nothing for the next \
+                              start: save it."
+                        .to_owned()
+                }
                 (Some(path), true) => format!("{path}\nhas changes that are not saved"),
                 (Some(path), false) => format!("{path}\nis saved"),
             };

@@ -58,13 +58,21 @@ impl State {
         }
     }
 
-    /// What would be lost or stopped, one sentence each. A case without a file is kept over a restart.
+    /// What would be lost or stopped, one sentence each. A case without a file is kept over a restart, by the
+    /// window that keeps its state.
     pub fn reasons_to_stay(&self, to: &Leaving) -> Vec<String> {
         let mut reasons = Vec::new();
         let is_quit = *to == Leaving::Quit;
-        if self.is_case_changed() && (!is_quit || self.case.path.is_some()) {
+        let has_file = self.case.path.is_some();
+        let is_kept = is_quit && !has_file && self.session.keeps_state;
+        if self.is_case_changed() && !is_kept {
             let name = &self.case.file.name;
-            reasons.push(format!("The case {name:?} has changes that are not in its file."));
+            reasons.push(match is_quit && !has_file {
+                true => format!(
+                    "The case {name:?} is in no file, and this window keeps nothing for the next start."
+                ),
+                false => format!("The case {name:?} has changes that are not in its file."),
+            });
         }
         if !is_quit {
             return reasons;

@@ -97,9 +97,13 @@ impl State {
         self.say(Severity::Info, text);
     }
 
-    /// Asks for the force of the collision, if the question has changed.
+    /// Asks for the force of the collision, if the question has changed. What was predicted before is dropped
+    /// where nothing can be asked: it is of another collision.
     fn ask_for_force(&mut self, context: &Context) {
-        let Some(question) = self.force_request() else { return };
+        let Some(question) = self.force_request() else {
+            self.session.force.forecast.drop_answer();
+            return;
+        };
         let (force, library) = (&mut self.session.force, &self.session.library);
         force.forecast.ask(question, library, wake(context));
     }

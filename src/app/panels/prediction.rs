@@ -7,7 +7,7 @@ use crate::app::command::Command;
 use crate::app::force::ForceSession;
 use crate::app::looks;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
-use crate::app::panels::prediction_form::form_ui;
+use crate::app::panels::prediction_form::{COLLISION_NOT_KNOWN, form_ui};
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
 use crate::app::widgets::{
@@ -52,7 +52,13 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(looks::GRID)).show(
         ui,
         |ui| match &session.force.forecast.answer {
-            None => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Predicting…")))),
+            None if session.force.forecast.is_waiting() => {
+                drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Predicting…"))));
+            }
+            None if session.sources.iter().any(|source| !source.is_settled()) => {
+                drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Reading…"))));
+            }
+            None => drop(ui.label(COLLISION_NOT_KNOWN)),
             Some(Err(problem)) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                 ui.colored_label(color, format!("Not predicted: {problem}"));

@@ -22,8 +22,8 @@ use impactlab_networks::force::ForceScenario;
 const SLIDER_WIDTH: f32 = 110.0;
 
 /// What stands in the place of the numbers of a collision that has none.
-const COLLISION_NOT_KNOWN: &str =
-    "The vehicles of the scenario do not meet, or the data set of the case is not open.";
+pub const COLLISION_NOT_KNOWN: &str = "There is no collision to predict: the vehicles of the scenario do \
+     not meet, or the data set of the case is not open. Change the scenario, or open the data set.";
 
 /// Draws the origin of the collision, its numbers, and which of them are open.
 pub fn form_ui(

@@ -75,8 +75,10 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         match answer {
             Some(Ok(answer)) => {
                 let report = &answer.report;
-                facts_ui(ui, &report.name, &report.facts(), view.units);
-                caveats_ui(ui, &report.caveats, view.units, commands);
+                super::faded_if(ui, session.impact.is_late(), |ui| {
+                    facts_ui(ui, &report.name, &report.facts(), view.units);
+                    caveats_ui(ui, &report.caveats, view.units, commands);
+                });
             }
             Some(Err(_)) => {}
             None => drop(ui.spinner()),

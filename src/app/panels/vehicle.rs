@@ -83,7 +83,9 @@ fn uncertainty_ui(ui: &mut Ui, pane: &PaneContext<'_>) {
     let Some(uncertainty) = &answer.report.uncertainty else { return };
     ui.separator();
     ui.label("4DOF model:");
-    facts_ui(ui, &answer.report.name, &uncertainty.facts(), pane.view.units);
+    super::faded_if(ui, pane.session.is_simulation_late(), |ui| {
+        facts_ui(ui, &answer.report.name, &uncertainty.facts(), pane.view.units);
+    });
 }
 
 /// Draws, of a scenario, the choice whether the vehicles are followed through all contacts.

@@ -68,11 +68,14 @@ impl State {
     }
 
     /// Asks for the motion of the struck vehicle, if the question has changed. It waits until the
-    /// simulation of the subject is finished, and drops the forecast if that has no struck vehicle.
+    /// simulation of the subject is finished, and drops the forecast if there is none, or if that has no
+    /// struck vehicle: what is left would be of something else.
     fn ask_for_motion(&mut self, context: &Context) {
         let analysis = &self.session.analysis;
-        let Some(simulated) = analysis.ok().filter(|_| !analysis.is_waiting()) else { return };
-        if simulated.analysis.struck.is_none() {
+        if analysis.is_waiting() {
+            return;
+        }
+        if !analysis.ok().is_some_and(|simulated| simulated.analysis.struck.is_some()) {
             self.session.response.forecast.forget();
             return;
         }

@@ -102,6 +102,8 @@ pub struct Session {
     pub dialogs: Dialogs,
     /// Whether the window may close without a question.
     pub may_close: bool,
+    /// Whether this window keeps its state for the next start. A second one does not.
+    pub keeps_state: bool,
     /// Whether what was done before cannot be undone any more: the project is of another variant.
     pub history_ends: bool,
     /// Whether the three ways to begin are shown in the place of the panes.

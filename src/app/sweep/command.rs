@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::app::found::Found;
-use crate::app::sweep::{ReadSweep, TimedRows};
+use crate::app::sweep::{ReadSweep, SweepView, TimedRows};
 use impactlab_sweep::RunReport;
 
 /// An action on the sweep.
@@ -19,8 +19,8 @@ pub enum SweepCommand {
     Read(Found<ReadSweep>),
     /// Time some rows, of which nothing is left behind.
     Time,
-    /// Take how long some rows took, or why that is not known.
-    Timed(Result<TimedRows, String>),
+    /// Take how long some rows of a sweep took, or why that is not known.
+    Timed(SweepView, Result<TimedRows, String>),
     /// Compute the chunks that are missing.
     Start,
     /// Stop computing or merging. Chunks that are finished stay.

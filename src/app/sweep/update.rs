@@ -28,12 +28,21 @@ impl State {
             SweepCommand::Read(read) => {
                 let session = &mut self.session.sweep;
                 if session.reading.as_ref() == Some(&read.of) {
+                    let before = session.sweep().map(|sweep| sweep.plan.clone());
                     session.reading = None;
                     session.read = Some(read.take());
+                    // Rows of the plan as it was say nothing of those that it has now.
+                    if session.sweep().map(|sweep| &sweep.plan) != before.as_ref() {
+                        session.timed = None;
+                    }
                 }
             }
             SweepCommand::Time => self.time_rows(),
-            SweepCommand::Timed(timed) => self.session.sweep.timed = Some(timed),
+            SweepCommand::Timed(of, timed) => {
+                if of == self.view.sweep {
+                    self.session.sweep.timed = Some(timed);
+                }
+            }
             SweepCommand::Start => self.start_sweep(),
             SweepCommand::Cancel => {
                 for key in [TaskKey::Sweep, TaskKey::MergeSweep, TaskKey::TimeSweep] {
@@ -70,6 +79,7 @@ impl State {
 
     fn show_sweep(&mut self, of: SweepView) {
         self.view.sweep = of;
+        self.session.tasks.stop(&TaskKey::TimeSweep);
         let session = &mut self.session.sweep;
         (session.read, session.timed, session.problem) = (None, None, None);
         self.look_at_sweep();
@@ -108,11 +118,12 @@ impl State {
     fn time_rows(&mut self) {
         let Some(sweep) = self.session.sweep.sweep() else { return };
         let (plan, library) = (sweep.plan.clone(), Arc::clone(&self.session.library));
+        let of = self.view.sweep.clone();
         self.session.sweep.timed = None;
         self.session.tasks.start_in_background(
             TaskKey::TimeSweep,
             move |report| work::time(&plan, &library, report),
-            |timed| Command::Sweep(SweepCommand::Timed(timed)),
+            |timed| Command::Sweep(SweepCommand::Timed(of, timed)),
         );
     }
 
