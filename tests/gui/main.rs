@@ -8,6 +8,7 @@ mod caveats;
 mod conditioning;
 mod controls;
 mod density_gpu;
+mod empty;
 mod film;
 mod film_camera;
 mod force_network;

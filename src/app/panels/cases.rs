@@ -22,7 +22,8 @@ const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     if listed_in(&session.sources, view).is_none() {
-        ui.label("No data set is open. The cases of a data set are listed here.");
+        ui.strong("No data set is listed");
+        ui.label("The cases of a data set stand here, and a click on one shows it. Open a data set in the Data pane (a folder with cases.csv and forces/ or trajectories/), or click one that is open there.");
         return;
     }
     let before = view.filter.clone();

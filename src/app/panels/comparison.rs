@@ -7,7 +7,8 @@ use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{caveats_ui, facts_ui, value_row, value_ui};
+use crate::app::source::{Source, open_datasets};
+use crate::app::widgets::{caveats_ui, facts_ui, no_dataset_ui, value_row, value_ui};
 use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::numerics::Summary;
@@ -17,18 +18,18 @@ use impactlab_study::{Answer, SimulateDatasetReport, SimulateReport};
 /// Draws the errors of the selected subject, and below them those of the whole data set with the
 /// button that starts its simulation.
 pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, commands, .. } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        if let Some(answer) = analysis_or_hint(ui, session) {
+        if let Some(answer) = analysis_or_hint(ui, session, project, commands) {
             case_ui(ui, &answer.report, view.units, commands);
         }
         ui.separator();
         let (Some(path), Some(checked)) = (&view.listed, listed_in(&session.sources, view)) else {
-            return;
+            return no_data_ui(ui, &session.sources, commands);
         };
         if checked.dataset.kind != DatasetKind::Trajectory {
             ui.weak("The listed data set has no recorded motions to compare with.");
-            return;
+            return no_data_ui(ui, &session.sources, commands);
         }
         let replay = session.replays.get(path);
         let report = replay.and_then(|replay| replay.report());
@@ -47,6 +48,19 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             commands.push(Command::ReplayDataset(path.clone()));
         }
     });
+}
+
+/// Draws how all cases of a data set come to be compared, where none with recorded motions is listed.
+fn no_data_ui(ui: &mut Ui, sources: &[Source], commands: &mut Vec<Command>) {
+    if !sources.iter().all(Source::is_settled) {
+        return;
+    }
+    match open_datasets(sources, &[DatasetKind::Trajectory]).is_empty() {
+        true => no_dataset_ui(ui, DatasetKind::Trajectory, commands),
+        false => drop(ui.weak(
+            "Click a trajectory data set in the Data pane: all its cases can be compared here.",
+        )),
+    }
 }
 
 fn case_ui(
@@ -69,7 +83,9 @@ fn case_ui(
                 value_row(ui, &label, &text);
             }
         })),
-        None => drop(ui.weak("No recorded motion to compare with.")),
+        None => drop(ui.weak(
+            "No recorded motion to compare with: cases of a trajectory data set and trajectory files have one.",
+        )),
     }
 }
 

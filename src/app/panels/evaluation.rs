@@ -10,6 +10,7 @@ use crate::app::cost::CostPlace;
 use crate::app::force::{ForceSession, Statistic};
 use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
+use crate::app::panels::model_row::no_model_ui;
 use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
@@ -76,8 +77,9 @@ fn start_ui(
 ) {
     let datasets = open_datasets(sources, &[DatasetKind::Force]);
     let Some(current) = &force.model.current else {
-        ui.label("There is no force model to evaluate: open or train one in the Training pane.");
-        return;
+        let use_of_it =
+            "A force model predicts the contact force of a collision, and how sure that is.";
+        return no_model_ui(ui, &force.model, use_of_it, commands);
     };
     if datasets.is_empty() {
         no_dataset_ui(ui, DatasetKind::Force, commands);

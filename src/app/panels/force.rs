@@ -24,11 +24,13 @@ const PULSE_INTERVAL_S: f64 = 5e-4;
 /// the force, and the plot.
 pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, between, variants, commands, .. } = pane;
-    let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
+    let Some(SimulateAnswer { report, analysis }) =
+        analysis_or_hint(ui, session, project, commands)
+    else {
         return;
     };
     let (Some(force), Some(numbers)) = (&analysis.force, &report.force) else {
-        ui.label("This file holds no contact force.");
+        ui.label("What is chosen has no contact force. Choose a case of a force data set, open a force file, or set up a scenario.");
         return;
     };
     let drawn = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {

@@ -25,7 +25,15 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(TEXT_WIDTH.min(ui.available_width()));
         choice_ui(ui, &mut project.hand);
-        let Some(request) = &mut project.hand else { return };
+        let Some(request) = &mut project.hand else {
+            let labels: Vec<&str> = HandMethod::ALL.iter().map(|method| method.label()).collect();
+            ui.weak(format!(
+                "One quantity by one equation, with its standard deviation, beside the reconstruction and \
+                 without it. Choose a method: {}.",
+                labels.join("; ")
+            ));
+            return;
+        };
         ui.add(Label::new(request.method.equation()).wrap());
         inputs_ui(ui, request, view.units);
         if request.method.takes_points() {

@@ -1,8 +1,13 @@
 //! What panes show in the place of an answer, or over one that is late.
 
-use egui::{RichText, Ui};
+use egui::Ui;
 
-use crate::app::state::Session;
+use crate::app::command::Command;
+use crate::app::model::file_name;
+use crate::app::project::Project;
+use crate::app::source::{Content, Source};
+use crate::app::state::{Session, Subject};
+use impactlab_core::data::Severity;
 use impactlab_draw::theme;
 use impactlab_study::SimulateAnswer;
 
@@ -22,27 +27,73 @@ pub(super) fn faded_if<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui)
 }
 
 /// Returns the simulation of the selected subject. If there is none, it draws the reason (an error,
-/// a simulation that is still running, or no selection) and returns `None`.
+/// a simulation that is still running, data that are not there, or no selection) with what can be done, and
+/// returns `None`.
 pub(super) fn analysis_or_hint<'a>(
     ui: &mut Ui,
     session: &'a Session,
+    project: &Project,
+    commands: &mut Vec<Command>,
 ) -> Option<&'a SimulateAnswer> {
     match &session.analysis.answer {
         Some(Ok(answer)) => return Some(answer),
         Some(Err(error)) => {
             let dark = ui.visuals().dark_mode;
-            let color = theme::severity_color(impactlab_core::data::Severity::Error, dark);
+            let color = theme::severity_color(Severity::Error, dark);
             ui.colored_label(color, format!("Not computed: {error}"));
         }
         None if session.analysis.is_waiting()
             || session.sources.iter().any(|s| !s.is_settled()) =>
         {
-            ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));
+            working_ui(ui);
         }
-        None => {
-            ui.label(RichText::new("No case chosen").strong());
-            ui.label("Choose a case in the Data workspace, open a file (File, or drop it here), or set up a scenario.");
-        }
+        None => nothing_asked_ui(ui, &session.sources, project.subject().as_ref(), commands),
     }
     None
+}
+
+fn working_ui(ui: &mut Ui) {
+    ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));
+}
+
+/// Draws why nothing is simulated: nothing is selected, or the data of what is selected are not there.
+fn nothing_asked_ui(
+    ui: &mut Ui,
+    sources: &[Source],
+    subject: Option<&Subject>,
+    commands: &mut Vec<Command>,
+) {
+    let path = match subject {
+        None => {
+            ui.strong("No case chosen");
+            ui.label("Choose a case in the Data workspace, open a file (File, or drop it here), or set up a scenario.");
+            return;
+        }
+        Some(Subject::Scenario | Subject::Manoeuvre) => return working_ui(ui),
+        Some(Subject::Case { dataset: path, .. } | Subject::File(path)) => path,
+    };
+    let name = file_name(path);
+    let source = sources.iter().find(|source| source.path == *path);
+    match (source.map(|source| &source.content), subject) {
+        (None, _) => {
+            ui.strong(format!("{name} is not open"));
+            ui.label("What is chosen comes from there. Open it again, or choose something else in the Data workspace.");
+            let button = ui.button(format!("Open {name}"));
+            if button.on_hover_text(path.display().to_string()).clicked() {
+                commands.push(Command::Open(vec![path.clone()]));
+            }
+        }
+        (Some(Content::Failed(why)), _) => {
+            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+            ui.colored_label(color, format!("{name} is not read: {why}"));
+            ui.label("The Data workspace says more, and has what else can be chosen.");
+        }
+        (Some(Content::Dataset(checked)), Some(Subject::Case { case, .. }))
+            if checked.dataset.case(case).is_none() =>
+        {
+            ui.strong(format!("{name} has no case {case}"));
+            ui.label("Choose another one in the Data workspace.");
+        }
+        (Some(_), _) => working_ui(ui),
+    }
 }

@@ -43,7 +43,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn plots_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, plots: &mut MotionPlots) {
     let PaneContext { project, view, session, between, variants, commands, .. } = pane;
-    if analysis_or_hint(ui, session).is_none() {
+    if analysis_or_hint(ui, session, project, commands).is_none() {
         return;
     }
     let Some(answer) = session.analysis.ok() else { return };

@@ -93,7 +93,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(looks::GRID)).show(
         ui,
         |ui| {
-            if analysis_or_hint(ui, session).is_none() {
+            if analysis_or_hint(ui, session, project, commands).is_none() {
                 return;
             }
             if let Some(shown) = shown_forecast(session) {

@@ -48,7 +48,7 @@ const HINTS: [&str; 2] = [
 
 /// Draws the time slider and the scene.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    if analysis_or_hint(ui, pane.session).is_none() {
+    if analysis_or_hint(ui, pane.session, pane.project, pane.commands).is_none() {
         return bare_ground_ui(ui, pane);
     }
     let Some(answer) = pane.session.analysis.ok().cloned() else { return };
@@ -56,7 +56,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, variants, commands, .. } = pane;
     let series = analysis.simulation.as_ref().map(|motion| &motion.series);
     let Some(series) = series.or(analysis.reference.as_ref()) else {
-        ui.label("There is no motion to show.");
+        ui.label("There is no motion to show: nothing was recorded, and nothing is simulated. Choose another case, or set up a scenario.");
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);

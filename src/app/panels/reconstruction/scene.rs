@@ -49,7 +49,7 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
     let PaneContext { project, view, session, commands, .. } = pane;
     let of = &session.reconstruction;
     let Some(preview) = &of.preview else {
-        ui.weak("What was found and the paths that go with it, from above.");
+        ui.weak("What was found is drawn here from above, and after a run the paths that go with it. Begin in the Evidence pane.");
         return;
     };
     let shown = Shown::new(of, project.reconstruct.as_ref());

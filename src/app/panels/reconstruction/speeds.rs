@@ -31,11 +31,18 @@ pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let is_outdated = of.is_outdated(project.reconstruct.as_ref());
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let Some(answer) = of.answer() else {
-            ui.weak(match of.run.is_running() {
-                true => {
+            ui.weak(match (of.run.is_running(), of.preview.is_some()) {
+                (true, _) => {
                     "The speeds stand here when the run has ended; its particles are in the scene."
                 }
-                false => "What the evidence says of the speeds, once it has been run.",
+                (false, true) => {
+                    "What the evidence says of the speeds stands here, once it has been run: with the \
+                     button Run of the Evidence pane."
+                }
+                (false, false) => {
+                    "What the evidence says of the speeds stands here, once it has been run. There is no \
+                     evidence yet: begin in the Evidence pane."
+                }
             });
             return;
         };
