@@ -55,6 +55,8 @@ pub(super) fn part(
         }
     }
     blocks.extend(report.both_vehicles_tables().iter().map(|table| facts_table(table, context)));
+    let has_phases = report.contacts.as_ref().is_some_and(|contacts| !contacts.phases.is_empty());
+    blocks.extend(has_phases.then(|| Block::paragraph(words.phases_text)));
     blocks.extend(report.rival_table().iter().map(|table| facts_table(table, context)));
     let shares = report.sensitivity_table();
     let shares = shares.iter().map(|table| facts_table(table, context));

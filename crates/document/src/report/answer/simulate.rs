@@ -36,7 +36,9 @@ pub(super) fn part(
     blocks.extend(facts_with_meaning(&report.motion_table(), "", context));
     let beside = report.rival.as_ref();
     blocks.extend(beside.map(|rival| facts_table(&rival.table(), context)));
-    blocks.extend(report.contact_table().iter().map(|table| facts_table(table, context)));
+    if let Some(phases) = report.contact_table() {
+        blocks.extend([facts_table(&phases, context), Block::paragraph(words.phases_text)]);
+    }
     blocks.extend(computed_marks(report, context));
     let mut sensitivity = Vec::new();
     let mut draws = Vec::new();

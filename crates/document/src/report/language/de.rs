@@ -112,6 +112,9 @@ pub(super) const WORDS: Words = Words {
     meaning_motion_one: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach der Verteilung des \
         Bewegungsnetzes für diese eine Kraft und dieses Fahrzeug, deren eigene Unsicherheit fehlt. Wie oft \
         solche Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
+    phases_text: "Eine Phase des Kontakts dauert von der Berührung bis zur Trennung, auch während ein Fahrzeug das andere \
+        weiterschiebt; ihr Impuls und ihr Δv, nach der Kontaktkraft allein, gelten für die ganze Phase und nicht für die \
+        Kraft des ersten Kontakts, die eigens angegeben ist.",
     learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; danach rechnet die \
         Vorhersage mit dem 4DOF-Modell und den angepassten Effekten weiter.",
     forecast_scene_picture: "Vorhersage von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",

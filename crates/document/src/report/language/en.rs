@@ -110,6 +110,9 @@ pub(super) const WORDS: Words = Words {
     meaning_motion_one: "Each value lies in its interval of 90 % with that probability, by the distribution of the response \
         network for this one force and vehicle, whose own uncertainty is left out. Section 7 says how often \
         such regions of the position held.",
+    phases_text: "A phase of contact lasts from touch to parting, also while one vehicle pushes the other on; its impulse \
+        and its Δv, by the contact force alone, are those of the whole phase, and not those of the force of the first \
+        contact, which stands by itself.",
     learned_duration: "The response network has learned from motions of up to {time}; after that the forecast \
         goes on with the 4DOF model and its fitted effects.",
     forecast_scene_picture: "Forecast from above: paths, and density with the regions of 50 and 90 % at the end",

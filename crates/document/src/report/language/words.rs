@@ -92,6 +92,7 @@ pub(in crate::report) struct Words {
     pub force_forecast_picture: &'static str,
     pub meaning_motion: &'static str,
     pub meaning_motion_one: &'static str,
+    pub phases_text: &'static str,
     pub learned_duration: &'static str,
     pub forecast_scene_picture: &'static str,
     pub forecast_paths_picture: &'static str,
