@@ -63,9 +63,9 @@ case was saved.";
 #[derive(Debug, Args)]
 #[command(after_help = "\
 JSON: name, notes, shown, variants [{name, notes, questions [..]}], files [{path, bytes, sha256}], models
-  [{network, name, sha256}], log [{time, event}], sha256 (of the file itself), is_as_saved (whether nobody
-  has edited it since; null without a seal), changes [{kind, path}], reach {reads [..], writes [..],
-  trains}
+  [{network, name, sha256}], log [{time, event}], unused [..] (what is filled in and not asked), sha256 (of
+  the file itself), is_as_saved (whether nobody has edited it since; null without a seal), changes [{kind,
+  path}], reach {reads [..], writes [..], trains}
 
 What the case does beyond reading files in its own folder is reach. None of its files is read then, and
 nothing is said of changes of theirs, unless --trust is given.
@@ -175,6 +175,8 @@ fn pack_case(args: &PackArgs, console: &mut Console<'_>) -> Result<Verdict, CliE
 struct CheckedCase<'a> {
     #[serde(flatten)]
     case: &'a CaseFile,
+    #[serde(skip_serializing_if = "<[String]>::is_empty")]
+    unused: &'a [String],
     sha256: &'a str,
     is_as_saved: Option<bool>,
     changes: &'a [Change],
@@ -189,8 +191,10 @@ fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, Cl
     let own = CaseOnDisk::read(&args.case)?;
     let of_files = if is_untrusted { Vec::new() } else { case.changes() };
     let changes: Vec<Change> = of_files.into_iter().chain(own.change()).collect();
+    let unused = case.unused();
     let checked = CheckedCase {
         case: &case,
+        unused: &unused,
         sha256: &own.file.sha256,
         is_as_saved: own.is_as_saved,
         changes: &changes,
@@ -208,6 +212,9 @@ fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, Cl
             for line in variant.notes.lines() {
                 writeln!(out, "  {}", within_line(line))?;
             }
+        }
+        for unused in &unused {
+            writeln!(out, "note: {}", within_line(unused))?;
         }
         for UsedFile { path, bytes, sha256 } in &case.files {
             writeln!(out, "file {}, {bytes} bytes, SHA-256 {sha256}", shown_path(path))?;

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile, Variant};
-use crate::{InputKind, Request};
+use crate::{EvidenceChoice, InputKind, Request};
 use impactlab_core::data::parts_beside;
 use impactlab_core::data::write::{FileDigest, sha256_hex};
 use impactlab_core::site::Site;
@@ -145,6 +145,14 @@ pub(super) fn links_in(folder: &Path) -> Option<Vec<PathBuf>> {
     Some(links)
 }
 
+/// The evidence that a question rests on.
+fn evidence_of(question: &Request) -> Option<&EvidenceChoice> {
+    match question {
+        Request::Reconstruct(request) => Some(&request.evidence),
+        _ => None,
+    }
+}
+
 /// Orthophoto, world file and drawing of a site, the other parts of a file of results of which this is the
 /// first, and the curves of a crash test; none for any other file.
 pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
@@ -188,6 +196,38 @@ impl CaseFile {
             named.into_iter().chain(absolute_paths(&variant.view))
         };
         self.variants.iter().flat_map(in_variant).collect()
+    }
+
+    /// What is filled in and used by no question that is asked, a sentence each: evidence, and files that
+    /// questions name which are not asked. Nothing is read.
+    pub fn unused(&self) -> Vec<String> {
+        let asked = || self.variants.iter().flat_map(|variant| &variant.questions);
+        let named: HashSet<PathBuf> = asked().flat_map(Request::named_paths).collect();
+        let is_asked = |evidence: &EvidenceChoice| {
+            asked().filter_map(evidence_of).any(|of_question| of_question == evidence)
+        };
+        let mut found = Vec::new();
+        for variant in &self.variants {
+            for question in &variant.unasked {
+                let paths = question.named_paths().into_iter().filter(|path| !named.contains(path));
+                let files = paths.map(|path| format!("the file {}", path.display()));
+                let evidence = evidence_of(question).filter(|evidence| !is_asked(evidence));
+                let inline = evidence.and_then(|evidence| match evidence {
+                    EvidenceChoice::Inline(evidence) => Some(evidence.case.as_str()),
+                    // It is one of the files.
+                    EvidenceChoice::File(_) => None,
+                });
+                let inline = inline.map(|name| format!("the evidence {name:?}"));
+                let said = |what: String| {
+                    format!(
+                        "variant {:?}: {what} is used by no question that is asked",
+                        variant.name
+                    )
+                };
+                found.extend(inline.into_iter().chain(files).map(said));
+            }
+        }
+        found
     }
 
     /// Every file that an answer to the case rests on, with those within its data sets.
@@ -261,5 +301,36 @@ impl CaseFile {
     pub(super) fn no_variant(&self, name: &str) -> CaseError {
         let known = self.variants.iter().map(|variant| variant.name.clone()).collect();
         CaseError::NoVariant { name: name.to_owned(), known }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ImpactRequest, ReconstructRequest, ScenarioChoice};
+
+    /// `check` said nothing of evidence that a case has and that no question uses.
+    #[test]
+    fn evidence_that_no_question_uses_is_said() {
+        let evidence = |case: &str| {
+            let mut evidence = crate::examples::spin();
+            evidence.case = case.to_owned();
+            Request::from(ReconstructRequest::new(EvidenceChoice::Inline(Box::new(evidence))))
+        };
+        let file =
+            |path: &str| Request::from(ImpactRequest::new(ScenarioChoice::File(path.into())));
+        let variant = |questions, unasked| Variant {
+            name: "a".to_owned(),
+            questions,
+            unasked,
+            ..Variant::default()
+        };
+        let asked = vec![evidence("one"), file("/x/a.toml")];
+        let unused = |unasked| CaseFile::new("case", variant(asked.clone(), unasked)).unused();
+        assert_eq!(unused(asked.clone()), [""; 0]);
+        let said = unused(vec![evidence("two"), file("/x/b.toml")]);
+        let [of_evidence, of_file] = &said[..] else { panic!("{said:?}") };
+        assert!(of_evidence.contains("the evidence \"two\" is used by no question"), "{said:?}");
+        assert!(of_file.contains("b.toml is used by no question"), "{said:?}");
     }
 }

@@ -115,8 +115,9 @@ impl InputFileReport {
     fn table(&self) -> FactTable {
         let name = Fact::text(Term::Name, &self.name);
         let contents = self.contents.iter().map(|part| Fact::text(Term::Contents, part));
+        let unused = self.unused.iter().map(|part| Fact::text(Term::Note, part));
         let command = self.command().map(|command| Fact::text(Term::Command, command));
-        let facts = std::iter::once(name).chain(contents).chain(command).collect();
+        let facts = std::iter::once(name).chain(contents).chain(unused).chain(command).collect();
         FactTable::new(title(&self.path, word(&self.kind)), facts)
     }
 }

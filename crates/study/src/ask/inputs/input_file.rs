@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::case_file::CaseFile;
+use crate::questions::reconstruct::assumed::unused;
 use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
 use impactlab_core::compare::PairRecords;
@@ -181,6 +182,18 @@ impl InputFile {
             | Self::Checkpoint
             | Self::Settings
             | Self::OfSweep => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
+
+    /// What of it no answer uses, a sentence each: what evidence says and a reconstruction from it does not
+    /// depend on, and what a case has filled in and does not ask.
+    pub(crate) fn unused(&self) -> Vec<String> {
+        match self {
+            Self::Case(case) => case.unused(),
+            Self::Evidence(evidence) => {
+                unused(evidence, false).iter().map(ToString::to_string).collect()
+            }
+            _ => Vec::new(),
         }
     }
 

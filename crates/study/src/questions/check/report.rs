@@ -39,6 +39,9 @@ pub struct InputFileReport {
     /// What it consists of, where that is told.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub contents: Vec<String>,
+    /// What of it no answer uses.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub unused: Vec<String>,
 }
 
 impl InputFileReport {
@@ -356,7 +359,7 @@ mod tests {
         let command = |kind, contents: &[&str]| {
             let contents = contents.iter().map(|part| (*part).to_owned()).collect();
             let (path, name) = (PathBuf::from("f"), "f".to_owned());
-            InputFileReport { path, kind, name, contents }.command()
+            InputFileReport { path, kind, name, contents, unused: Vec::new() }.command()
         };
         for (contents, expected) in [
             ("force network", "impactlab evaluate force --model FILE"),

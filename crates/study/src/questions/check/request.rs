@@ -200,11 +200,17 @@ impl CheckReport {
     }
 
     fn add_input_file(&mut self, path: &Path, kind: InputKind) {
-        let summary = |file: InputFile| Ok((file.name(path), file.contents(kind)?));
+        let summary = |file: InputFile| {
+            Ok(InputFileReport {
+                path: path.to_owned(),
+                kind,
+                name: file.name(path),
+                contents: file.contents(kind)?,
+                unused: file.unused(),
+            })
+        };
         match InputFile::load_as(path, kind).and_then(summary) {
-            Ok((name, contents)) => {
-                self.models.push(InputFileReport { path: path.to_owned(), kind, name, contents });
-            }
+            Ok(report) => self.models.push(report),
             Err(error) => self.problems.push(PathProblem {
                 path: path.to_owned(),
                 kind,

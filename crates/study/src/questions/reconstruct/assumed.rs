@@ -288,7 +288,7 @@ fn without_anti_lock(
 /// What the evidence says and the answer does not depend on.
 ///
 /// - `are_followed`: whether both cars are followed through later contacts.
-pub(super) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
+pub(crate) fn unused(evidence: &Evidence, are_followed: bool) -> Vec<Caveat> {
     let Evidence { after, striking_after, prior, .. } = evidence;
     let striking_brakes = prior.striking_brake_start_s.or(prior.striking_brake_share);
     let is_striking_stated = *striking_after != After::default() || striking_brakes.is_some();

@@ -1,6 +1,6 @@
 //! From the evidence to the speeds before the collision.
 
-mod assumed;
+pub(crate) mod assumed;
 mod badges;
 pub(crate) mod later_contacts;
 mod particle_columns;
