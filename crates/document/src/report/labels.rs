@@ -6,7 +6,7 @@ use impactlab_core::vehicle::Integrator;
 use impactlab_study::word;
 
 /// Names whose words do not say what they mean.
-const NAMES: [(&str, &str); 37] = [
+const NAMES: [(&str, &str); 45] = [
     ("alone", "without the other method beside it"),
     ("bullet", "striking vehicle"),
     ("bullet_ending", "striking vehicle after the impact"),
@@ -26,6 +26,13 @@ const NAMES: [(&str, &str); 37] = [
     ("friction_sigma", "friction, one standard deviation"),
     ("from", "contact given by"),
     ("integrator", "method of integration"),
+    ("n_calibrated", "motions of the calibration"),
+    ("n_parameters", "weights of the network"),
+    ("n_samples", "states learned from"),
+    ("n_simulated", "simulated motions learned from"),
+    ("n_test", "cases kept for the test"),
+    ("n_train", "cases learned from"),
+    ("n_validation", "cases that decide when to stop"),
     ("offset_m", "offset from its middle"),
     ("one_contact", "first contact only"),
     ("open_contact", "contact point left open"),
@@ -38,6 +45,7 @@ const NAMES: [(&str, &str); 37] = [
     ("rolling_resistance_s2_m2", "rolling resistance per squared speed"),
     ("rolling_resistance_s_m", "rolling resistance per speed"),
     ("samples", "curves drawn"),
+    ("seconds", "duration in seconds"),
     ("shape", "pulse shape"),
     ("start_s", "from"),
     ("target", "struck vehicle"),
@@ -47,10 +55,15 @@ const NAMES: [(&str, &str); 37] = [
 ];
 
 /// Words by which a choice is written, with the name that the choice stands at.
-const CHOICES: [(&str, &str, &str); 13] = [
+const CHOICES: [(&str, &str, &str); 18] = [
     ("vehicle", "Automatic", "not named"),
     ("bullet", "Automatic", "not named"),
     ("striking", "Automatic", "not named"),
+    ("bad_cases", "refuse", "refused"),
+    ("bad_cases", "leave_out", "left out"),
+    ("config", "default", "the model's own, else the defaults"),
+    ("learning", "fleet", "the network, and how cars differ"),
+    ("learning", "strengths", "the strengths of one car"),
     ("equations", "corrected", "corrected"),
     ("equations", "paper", "as the paper prints them"),
     ("friction_model", "limit", "no sliding, up to the limit"),
@@ -131,6 +144,9 @@ mod tests {
         for (key, word) in all {
             let label = choice_label(key, &word).unwrap_or_else(|| panic!("{key}: {word}"));
             assert!(phrase_of(Language::De, label).is_some(), "{label}");
+        }
+        for (key, word, label) in CHOICES {
+            assert!(phrase_of(Language::De, label).is_some(), "{key}: {word}");
         }
         assert_eq!(choice_label("integrator", "rk4"), choice_label("integrator", "Rk4"));
         assert_eq!(choice_label("vehicle", "a.toml"), None);

@@ -2,7 +2,7 @@
 
 use crate::report::Language;
 use crate::report::language::words::Words;
-use crate::report::language::{de, de_sources, de_terms, en};
+use crate::report::language::{de, de_sources, de_terms, de_training, en};
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 
 /// The texts of the report itself.
@@ -52,11 +52,12 @@ fn rule_with_source(text: &str) -> Option<(&str, &str)> {
 }
 
 fn terms() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
-    de_terms::TERMS.iter().chain(de_sources::TERMS)
+    de_terms::TERMS.iter().chain(de_sources::TERMS).chain(de_training::TERMS)
 }
 
 fn templates() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
-    de_terms::TEMPLATES.iter().chain(de_sources::TEMPLATES)
+    let german = de_terms::TEMPLATES.iter().chain(de_sources::TEMPLATES);
+    german.chain(de_training::TEMPLATES)
 }
 
 /// What stands in a template: a label, a list of labels, or a name or number. Of a list every part must be
@@ -99,12 +100,15 @@ fn caveat_label(language: Language, text: &str) -> Option<&'static str> {
 mod tests {
     use super::*;
     use crate::figure::{ReplayCurve, WheelInput};
+    use crate::report::keys::bare;
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
     use impactlab_core::vehicle::{BuiltInVehicle, built_in_vehicle};
     use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
-    use impactlab_study::Measurements;
+    use impactlab_study::{Measurements, json_kinds};
     use impactlab_sweep::atlas::Measure;
+    use serde_json::Value;
+    use std::collections::BTreeSet;
 
     #[test]
     fn a_source_is_what_the_last_bracket_holds() {
@@ -204,6 +208,59 @@ mod tests {
     fn a_template_takes_no_other_label_in() {
         for text in ["turns right by about 180°, the driver brakes", "mark 1, unheard of"] {
             assert_eq!(phrase_of(Language::De, text), None, "{text}");
+        }
+    }
+
+    /// What is told of an answer in sections of their own, or of a question in its title.
+    const ELSEWHERE: [&str; 8] = [
+        "question",
+        "caveats",
+        "notes",
+        "badges",
+        "assumptions",
+        "version",
+        "seed",
+        "model_digests",
+    ];
+
+    /// Adds every name in what a schema describes.
+    fn add_names(schema: &Value, root: &Value, within: &[&str], names: &mut BTreeSet<String>) {
+        let of = |key: &str| schema.get(key).cloned().unwrap_or_default();
+        if let Some(path) = of("$ref").as_str().and_then(|path| path.strip_prefix('#')) {
+            if !within.contains(&path) {
+                let within = [within, &[path]].concat();
+                add_names(root.pointer(path).unwrap(), root, &within, names);
+            }
+        }
+        for (name, field) in of("properties").as_object().into_iter().flatten() {
+            if !ELSEWHERE.contains(&name.as_str()) {
+                names.insert(name.clone());
+                add_names(field, root, within, names);
+            }
+        }
+        let choices = ["allOf", "anyOf", "oneOf"].map(of);
+        let choices = choices.iter().filter_map(Value::as_array).flatten();
+        for part in choices.chain(schema.get("items")) {
+            add_names(part, root, within, names);
+        }
+    }
+
+    /// The report of a training stood in English in a German case.
+    #[test]
+    fn every_name_in_a_training_is_translated() {
+        for kind in json_kinds() {
+            if !["train_force", "train_response", "fine_tune"].contains(&kind.name.as_str()) {
+                continue;
+            }
+            for schema in [kind.request.to_value(), kind.answer.to_value()] {
+                let mut names = BTreeSet::new();
+                add_names(&schema, &schema, &[], &mut names);
+                assert!(names.len() > 8, "{}: {names:?}", kind.name);
+                for name in names {
+                    let words = bare(&name);
+                    assert!(phrase_of(Language::De, &words).is_some(), "{}: {name}", kind.name);
+                }
+            }
         }
     }
 

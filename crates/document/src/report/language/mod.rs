@@ -10,6 +10,8 @@ mod de_terms;
 
 mod de_sources;
 
+mod de_training;
+
 mod look_up;
 
 pub(super) use look_up::{phrase_of, words_of};
