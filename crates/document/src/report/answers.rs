@@ -220,6 +220,7 @@ mod tests {
             courses: Vec::new(),
             figures,
             held: None,
+            is_doubtful: false,
             hinges: Vec::new(),
         };
         Part {

@@ -13,6 +13,10 @@ use crate::report::{Block, Table};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatQuantity};
 use impactlab_core::units::{significant, trimmed};
 
+/// How the name of a p begins, and the least one that is told.
+const P_OF: &str = "p of ";
+const LEAST_P: f64 = 0.001;
+
 /// The limits of each method, how far networks apply, and every restriction once.
 pub(super) fn validity_blocks(
     variants: &[VariantParts],
@@ -116,7 +120,11 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
         && !caveat.value.is_some_and(|value_si| has_number(&caveat.text, value_si))
         && !has_number(&text.replace(',', "."), value)
     {
-        let number = |value: f64| wording.local(&trimmed(significant(value)));
+        let is_p = name.starts_with(P_OF);
+        let number = |value: f64| match is_p {
+            true => p_text(value, wording),
+            false => wording.local(&trimmed(significant(value))),
+        };
         let range = match range {
             Some([Some(low), Some(high)]) => {
                 format!("{} {} {}", number(low), words.to, number(high))
@@ -125,12 +133,21 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
             Some([None, Some(high)]) => fill(words.at_most, &[("high", &number(high))]),
             _ => return text,
         };
-        let quantity = capitalized(&format!("{}{unit}", wording.label(name)));
+        let quantity = format!("{}{unit}", wording.label(name));
+        let quantity = if is_p { quantity } else { capitalized(&quantity) };
         let value = number(value);
         let values = [("quantity", &*quantity), ("value", &*value), ("range", &*range)];
         text = format!("{text}. {}.", fill(words.allowed_range, &values));
     }
     text
+}
+
+/// A p, as the tables of the evidence have it.
+fn p_text(p: f64, wording: &Wording) -> String {
+    match p < LEAST_P {
+        true => format!("< {}", wording.given_number(LEAST_P)),
+        false => wording.local(&trimmed(format!("{p:.3}"))),
+    }
 }
 
 /// Whether a text has a value as a whole number of its own, so that 0 is not said by 10.
@@ -184,6 +201,19 @@ fn remedy(kind: CaveatKind, wording: &Wording) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::units::UnitSystem;
+
+    /// “P of EDR speed: 0.000001” stood beside “p: < 0.001”.
+    #[test]
+    fn a_p_has_the_digits_of_the_tables() {
+        let wording = Wording::english(UnitSystem::Si);
+        let told = |p| {
+            let caveat = Caveat::new(CaveatKind::EvidenceUnexplained, "rest x: found 1.00 m");
+            sentence(&caveat.with_value("p of rest x", p).with_range([0.05, 1.0]), &wording)
+        };
+        assert!(told(1e-6).ends_with("p of rest x: < 0.001, without restriction 0.05 to 1."));
+        assert!(told(0.008_259).contains("p of rest x: 0.008,"), "{}", told(0.008_259));
+    }
 
     /// “it still moves at 7.9 m/s … speed at the end: 7.914” said one thing twice.
     #[test]

@@ -29,7 +29,7 @@ const DRAWN: [ReconstructedQuantity; 2] =
 const DRAWN_OF_SINGLE_CAR: [ReconstructedQuantity; 2] =
     [ReconstructedQuantity::CarSpeed, ReconstructedQuantity::CarSideslip];
 
-/// Restrictions with which an interval is no answer.
+/// Restrictions with which an interval, or a figure without one, is no answer.
 const DOUBTS: [CaveatKind; 2] = [CaveatKind::EvidenceUnexplained, CaveatKind::FewParticles];
 
 /// What a reconstruction contributes.
@@ -67,10 +67,15 @@ pub(super) fn part(
     }
     blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
     if !doubts.is_empty() {
-        let doubt = fill(words.meaning_doubtful, &[("badges", &doubts.join(", "))]);
+        let template = match report.has_intervals() {
+            true => words.meaning_doubtful,
+            false => words.doubtful_figures,
+        };
+        let doubt = fill(template, &[("badges", &doubts.join(", "))]);
         opinion.answer = format!("{} {doubt}", opinion.answer);
         // How often intervals of answers without such a restriction held says nothing of these.
         opinion.held = None;
+        opinion.is_doubtful = true;
         blocks.push(Block::paragraph(doubt));
     }
     let draws = [
@@ -104,10 +109,9 @@ pub(super) fn part(
     }
 }
 
-/// The restrictions with which the intervals of an answer are none, each once.
+/// The restrictions with which an answer is none, each once.
 fn doubts(report: &Answer<ReconstructReport>, wording: &Wording) -> Vec<&'static str> {
-    let is_doubt = |kind| DOUBTS.contains(&kind) && report.has_intervals();
-    let doubts = report.caveats.iter().filter(|caveat| is_doubt(caveat.kind));
+    let doubts = report.caveats.iter().filter(|caveat| DOUBTS.contains(&caveat.kind));
     let mut doubts: Vec<&str> =
         doubts.map(|caveat| caveat.kind.label_in(wording.language)).collect();
     doubts.dedup();

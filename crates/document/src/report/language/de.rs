@@ -156,6 +156,8 @@ pub(super) const WORDS: Words = Words {
         wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
     meaning_doubtful: "Auf diese Intervalle und auf Wahrscheinlichkeiten von Geschehensabläufen ist kein Verlass: siehe die \
         Warnungen in Abschnitt 6 ({badges}).",
+    doubtful_figures: "Auf diese Werte und auf Wahrscheinlichkeiten von Geschehensabläufen ist kein Verlass: siehe die \
+        Warnungen in Abschnitt 6 ({badges}).",
     too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
         Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \
         einzelner Partikel. Mit mehr Partikeln erneut fragen und die Rechnung zu Ende führen.",

@@ -150,6 +150,8 @@ pub(super) const WORDS: Words = Words {
         of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals, and probabilities of courses of events, are not to be relied on: see the warnings \
         in section 6 ({badges}).",
+    doubtful_figures: "These figures, and probabilities of courses of events, are not to be relied on: see the warnings in \
+        section 6 ({badges}).",
     too_few_particles: "No interval is given: the sample is equivalent to only {ess} independent draws, or the run was \
         stopped before the evidence had its full weight, so that the ends of an interval would rest on single \
         draws. Ask again with more particles, and let the run end.",

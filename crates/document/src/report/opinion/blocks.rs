@@ -189,9 +189,20 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     }
     // Of bounds and of intervals that were tried nothing is said where none were counted.
     let is_counted = !blocks.is_empty();
-    if !is_counted {
+    let is_doubtful = |it: &&Spoken<'_>| it.opinions().any(|of| of.is_doubtful);
+    let doubtful: Vec<&str> = spoken.iter().filter(is_doubtful).map(|it| &*it.name).collect();
+    if !is_counted && doubtful.len() < spoken.len() {
         blocks.push(Block::paragraph(words.not_counted));
     }
+    blocks.extend(match doubtful.len() {
+        0 => None,
+        n if n == spoken.len() => Some(Block::paragraph(words.counted_of_others)),
+        _ => {
+            let names = doubtful.join(", ");
+            let values = [("name", &*names), ("answer", words.counted_of_others)];
+            Some(Block::paragraph(fill(words.of_variant, &values)))
+        }
+    });
     let known = if is_counted { words.known_error } else { words.known_error_uncounted };
     if is_counted && methods_of(spoken).contains(&Method::ContactLaw) {
         blocks.push(Block::paragraph(words.held_without_network));
@@ -303,6 +314,7 @@ mod tests {
                 courses: Vec::new(),
                 figures: vec![["distance".to_owned(), answer.to_owned()]],
                 held: None,
+                is_doubtful: false,
                 hinges: Vec::new(),
             }),
             ..Part::default()
@@ -322,23 +334,49 @@ mod tests {
     ///
     /// - `table`: what was counted.
     fn told_of_held(rank: Rank, table: Option<Block>, methods: &[Method]) -> String {
-        let part = Part {
-            opinion: Some(PartOpinion {
+        told_of_variants([("a", false, table)], rank, methods)
+    }
+
+    /// The same of several variants.
+    ///
+    /// - `variants`: name, whether it is doubtful, and what was counted.
+    fn told_of_variants<const N: usize>(
+        variants: [(&str, bool, Option<Block>); N],
+        rank: Rank,
+        methods: &[Method],
+    ) -> String {
+        let variants = variants.map(|(name, is_doubtful, held)| {
+            let opinion = PartOpinion {
                 rank,
                 question: "How does it move?".to_owned(),
                 answer: "1 m".to_owned(),
                 courses: Vec::new(),
                 figures: Vec::new(),
-                held: table,
+                held,
+                is_doubtful,
                 hinges: Vec::new(),
-            }),
-            methods: methods.iter().copied().collect(),
-            ..Part::default()
-        };
-        let variant =
-            VariantParts { name: "a".to_owned(), notes: String::new(), answers: vec![Ok(part)] };
-        let (variants, wording) = ([variant], Wording::english(UnitSystem::Si));
-        format!("{:?}", held(&spoken(&variants), &wording))
+            };
+            let methods = methods.iter().copied().collect();
+            let part = Part { opinion: Some(opinion), methods, ..Part::default() };
+            VariantParts { name: name.to_owned(), notes: String::new(), answers: vec![Ok(part)] }
+        });
+        format!("{:?}", held(&spoken(&variants), &Wording::english(UnitSystem::Si)))
+    }
+
+    /// “It was not counted” stood above an annex in which it was.
+    #[test]
+    fn what_was_counted_is_not_said_of_a_doubtful_answer() {
+        let table = || Some(Block::paragraph("19 of 20"));
+        let (rank, methods) = (Rank::Reconstruction, [Method::Reconstruction]);
+        let told = told_of_variants([("a", true, None)], rank, &methods);
+        assert!(
+            told.contains("says nothing of an answer") && !told.contains("not counted"),
+            "{told}"
+        );
+        let told = told_of_variants([("a", false, table()), ("b", true, None)], rank, &methods);
+        assert!(told.contains("19 of 20") && told.contains("“b”: How often"), "{told}");
+        let told = told_of_variants([("a", false, None), ("b", true, None)], rank, &methods);
+        assert!(told.contains("not counted") && told.contains("“b”: How often"), "{told}");
     }
 
     /// “The intervals were tried …; the bounds are those of 95 % confidence” stood below “it was not counted”.

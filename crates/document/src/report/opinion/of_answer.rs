@@ -71,6 +71,7 @@ pub(in crate::report) fn opinion_of_forecast(
         courses: report.course_table().as_ref().map(course).unwrap_or_default(),
         figures: rows_of(&table, |term| !ELSEWHERE.contains(&term), context),
         held: report.held_table().map(|table| facts_table(&table, context)),
+        is_doubtful: false,
         hinges: vec![match value_of(&table, Term::HingesOn, context) {
             Some(none) if none == Term::HingesOnNone.label(format.language) => {
                 words.no_hinge.to_owned()
@@ -118,6 +119,7 @@ pub(in crate::report) fn opinion_of_reconstruction(
         courses,
         figures,
         held: report.held_table().map(|table| facts_table(&table, context)),
+        is_doubtful: false,
         hinges: hinges.unwrap_or_else(|| vec![words.too_few_to_say.to_owned()]),
     }
 }
@@ -145,6 +147,7 @@ pub(in crate::report) fn opinion_of_simulation(
         courses: Vec::new(),
         figures,
         held: None,
+        is_doubtful: false,
         hinges: hinges.unwrap_or_else(|| vec![words.nothing_drawn.to_owned()]),
     }
 }
@@ -164,6 +167,7 @@ pub(in crate::report) fn opinion_of_force(
         courses: Vec::new(),
         figures,
         held: report.held_table().map(|table| facts_table(&table, context)),
+        is_doubtful: false,
         hinges: vec![words.force_hinges.to_owned()],
     }
 }
@@ -202,6 +206,7 @@ pub(in crate::report) fn opinion_of_impact(
         courses: Vec::new(),
         figures,
         held: None,
+        is_doubtful: false,
         hinges: vec![words.impact_hinges.to_owned()],
     }
 }

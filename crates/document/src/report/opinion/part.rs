@@ -32,6 +32,8 @@ pub(in crate::report) struct PartOpinion {
     pub figures: Vec<[String; 2]>,
     /// How often such intervals held; none where that was not measured.
     pub held: Option<Block>,
+    /// Whether it is restricted so that what was counted of others says nothing of it.
+    pub is_doubtful: bool,
     /// What the answer hinges on, in sentences.
     pub hinges: Vec<String>,
 }

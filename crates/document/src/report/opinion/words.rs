@@ -21,6 +21,7 @@ pub(super) struct OpinionWords {
     pub in_no_draw: &'static str,
     pub how_sure: &'static str,
     pub not_counted: &'static str,
+    pub counted_of_others: &'static str,
     pub known_error: &'static str,
     pub known_error_uncounted: &'static str,
     pub held_without_network: &'static str,
@@ -88,6 +89,8 @@ const EN: OpinionWords = OpinionWords {
     in_no_draw: "in no draw",
     how_sure: "How sure the answer is",
     not_counted: "For answers of this kind it was not counted how often their intervals held.",
+    counted_of_others: "How often intervals held when they were tried says nothing of an answer with the warnings of this \
+        one.",
     known_error: "The intervals were tried on computed collisions whose outcome was known; the known errors are in \
         section 7. The method was not validated against real collisions. The bounds are those of 95 % \
         confidence.",
@@ -163,6 +166,8 @@ const DE: OpinionWords = OpinionWords {
     in_no_draw: "in keiner Ziehung",
     how_sure: "Wie sicher die Antwort ist",
     not_counted: "Für Antworten dieser Art wurde nicht gezählt, wie oft ihre Bereiche zutrafen.",
+    counted_of_others: "Wie oft Bereiche zutrafen, als sie geprüft wurden, sagt nichts über eine Antwort mit den Warnungen \
+        dieser.",
     known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
         Fehler stehen in Abschnitt 7. Das Verfahren ist nicht an realen Unfällen validiert. Die Grenzen gelten \
         mit einer Sicherheit von 95 %.",

@@ -175,10 +175,14 @@ pub(super) fn of_left_out(left_out: &[LeftOut]) -> Vec<Caveat> {
         .collect()
 }
 
-/// A value of the evidence in its SI unit.
+/// A value of the evidence in its SI unit, as finely as such things are measured.
 fn of_evidence(value: f64, unit: &str) -> PhraseValue {
     match Quantity::from_si_symbol(unit) {
-        Some(quantity) => PhraseValue::fixed(quantity, value, 3),
+        Some(quantity @ Quantity::Speed) => PhraseValue::fixed(quantity, value, 1),
+        Some(quantity @ (Quantity::Length | Quantity::Angle | Quantity::AngularVelocity)) => {
+            PhraseValue::fixed(quantity, value, 2)
+        }
+        Some(quantity) => PhraseValue::significant(quantity, value),
         None if unit.is_empty() => PhraseValue::fixed(Quantity::Ratio, value, 3),
         None => PhraseValue::Name(format!("{value:.3} {unit}")),
     }
@@ -195,9 +199,9 @@ pub(super) fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
             };
             let text = Phrase::new(
                 "{0}: {3} {1}, expected {2}: items of the evidence contradict each other, or the course \
-                 of events is another one; do not rely on the intervals",
+                 of events is another one; do not rely on the answer",
                 "{0}: {3} {1}, erwartet {2}. Anknüpfungstatsachen widersprechen einander, oder der \
-                 Ablauf war ein anderer; die Intervalle sind nicht verwertbar",
+                 Ablauf war ein anderer; die Antwort ist nicht verwertbar",
             )
             .with(PhraseValue::Term(item.evidence.clone()))
             .with(of_evidence(item.found, item.unit))
@@ -208,4 +212,23 @@ pub(super) fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
                 .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_reconstruct::ComparedBy;
+
+    /// “found 99.000 km/h, expected 83.523 km/h” claimed a precision that neither has.
+    #[test]
+    fn unexplained_evidence_is_told_as_finely_as_it_is_measured() {
+        let said = |unit, found, expected| {
+            let (evidence, compared_by, p) = ("item".to_owned(), ComparedBy::Number, 1e-6);
+            let item = EvidenceFit { evidence, unit, expected, found, compared_by, p };
+            of_fit(&[item])[0].text.clone()
+        };
+        assert!(said("m/s", 27.5, 23.2009).contains("found 27.5 m/s, expected 23.2 m/s"));
+        assert!(said("m", 48.21, 45.1239).contains("found 48.21 m, expected 45.12 m"));
+        assert!(said("", 0.445, 0.57181).contains("found 0.445, expected 0.572"));
+    }
 }
