@@ -1,6 +1,6 @@
 use super::*;
 use crate::evidence::examples::{SPIN, read};
-use crate::evidence::{Mark, Measured, RestPose, Weighing, YesNoUnknown};
+use crate::evidence::{Mark, Measured, RestPose, Road, Weighing, YesNoUnknown};
 use crate::sampler::Target;
 use crate::{
     Discrepancy, EvidenceFit, MarkComparison, PriorComponent, PriorSource, ReconstructionTarget,
@@ -125,6 +125,9 @@ fn every_distribution_says_who_gave_it() {
     ranged.weighing = Some(Weighing { shared_scale_sigma: Some(0.01) });
     let mut unknown = found.clone();
     (unknown.friction, unknown.struck_car.mass_kg) = (None, None);
+    let mut dragged = found.clone();
+    let drag_factor = Some(Measured { value: 0.66, sigma: 0.04 }.into());
+    dragged.friction = Some(Road { drag_factor, ..Road::default() });
     let mut angled = found.clone();
     angled.damage.angle_rad = Some(Measured { value: 0.3, sigma: 0.1 }.into());
     let known = Preset::Reference.parameters();
@@ -141,6 +144,7 @@ fn every_distribution_says_who_gave_it() {
         (&found, any, Latent::ContactAlong, Some(PriorSource::Measured)),
         (&found, any, Latent::RoadFriction, Some(PriorSource::Measured)),
         (&unknown, any, Latent::RoadFriction, Some(PriorSource::Assumed)),
+        (&dragged, any, Latent::RoadFriction, Some(PriorSource::Estimated)),
         (&found, any, Latent::StruckMass, Some(PriorSource::Measured)),
         (&unknown, any, Latent::StruckMass, Some(PriorSource::Estimated)),
         (&unknown, Some(&known), Latent::StruckMass, Some(PriorSource::Given)),

@@ -77,7 +77,7 @@ pub enum PriorSource {
     /// A measured value of the evidence and its standard deviation; the usual one where the evidence says
     /// none.
     Measured,
-    /// A rule of the data sheet with its scatter.
+    /// A rule with its scatter: of the data sheet, or that of a road of which the drag of locked wheels is known.
     Estimated,
     /// Nobody said it: a default of the program, in the table of [`Prior`].
     Assumed,
@@ -286,7 +286,7 @@ impl Prior {
         let usual = Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA };
         let (source, friction) = match (evidence.road_friction(), evidence.drag_factor()) {
             (Some(measured), _) => (PriorSource::Measured, measured),
-            (None, Some(drag)) => (PriorSource::Measured, friction_by_drag(drag)),
+            (None, Some(drag)) => (PriorSource::Estimated, friction_by_drag(drag)),
             (None, None) => (PriorSource::Assumed, usual),
         };
         let high = HIGHEST_FRICTION.max(friction.value + 4.0 * friction.sigma);

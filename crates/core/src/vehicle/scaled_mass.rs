@@ -12,6 +12,8 @@ const SCALED_KEYS: [&str; 5] = [
     "suspension.roll_damping_n_m_s_rad",
 ];
 
+/// Key of the mass.
+const MASS_KEY: &str = "mass.mass_kg";
 /// Key of the yaw inertia.
 const YAW_INERTIA_KEY: &str = "mass.yaw_inertia_kg_m2";
 
@@ -26,6 +28,11 @@ impl VehicleParameters {
             scaled.note_mass(&before);
         }
         scaled
+    }
+
+    /// Whether its mass is that of a collision, and not that of the vehicle after which it is named.
+    pub fn has_mass_of_collision(&self) -> bool {
+        self.stated.get(MASS_KEY).is_some_and(|note| note.starts_with("said with the collision"))
     }
 
     /// Notes what of a vehicle without a data sheet was changed with its mass.
@@ -44,8 +51,8 @@ impl VehicleParameters {
             return;
         }
         let text = format!("said with the collision, instead of {} kg", before.mass_kg);
-        self.stated.insert("mass.mass_kg".to_owned(), text);
-        self.estimates.remove("mass.mass_kg");
+        self.stated.insert(MASS_KEY.to_owned(), text);
+        self.estimates.remove(MASS_KEY);
         let rule = format!(
             "scaled in proportion to the mass, from {} to {} kg",
             before.mass_kg, self.mass.mass_kg
@@ -106,6 +113,7 @@ mod tests {
         let source = &lighter.stated["mass.mass_kg"];
         assert_eq!(source, "said with the collision, instead of 2000 kg");
         assert_eq!(lighter.stated.len(), 1);
+        assert!(lighter.has_mass_of_collision() && !car().has_mass_of_collision());
         for key in SCALED_KEYS.into_iter().chain([YAW_INERTIA_KEY]) {
             let rule = &lighter.estimates[key];
             assert!(

@@ -229,18 +229,22 @@ fn below_each_other(tables: &[(String, &Table)], wording: &Wording) -> Table {
             names.push(name);
         }
     }
+    let of_each =
+        tables.iter().flat_map(|(variant, table)| table.rows.iter().map(move |row| (variant, row)));
+    let mut of_each: Vec<(&String, &Vec<String>)> = of_each.collect();
+    // A share at the front is no name: rows of two variants that have the same one say nothing of each other.
+    if !names.iter().any(|name| name.ends_with('%')) {
+        let place = |row: &Vec<String>| names.iter().position(|name| Some(*name) == row.first());
+        of_each.sort_by_key(|(_, row)| place(row));
+    }
     let mut rows: Vec<(&Vec<String>, Vec<&str>)> = Vec::new();
-    for name in names {
-        for (variant, table) in tables {
-            for row in table.rows.iter().filter(|row| row.first() == Some(name)) {
-                let is_of_others = |(known, of): &&mut (&Vec<String>, Vec<&str>)| {
-                    *known == row && of.iter().all(|name| name != variant)
-                };
-                match rows.iter_mut().find(is_of_others) {
-                    Some((_, of)) => of.push(variant),
-                    None => rows.push((row, vec![variant.as_str()])),
-                }
-            }
+    for (variant, row) in of_each {
+        let is_of_others = |(known, of): &&mut (&Vec<String>, Vec<&str>)| {
+            *known == row && of.iter().all(|name| name != variant)
+        };
+        match rows.iter_mut().find(is_of_others) {
+            Some((_, of)) => of.push(variant),
+            None => rows.push((row, vec![variant.as_str()])),
         }
     }
     let with_variants = |(row, of): (&Vec<String>, Vec<&str>)| {
@@ -391,5 +395,23 @@ mod tests {
         let rows = &only_table(&blocks).rows;
         let rows: Vec<String> = rows.iter().map(|row| row.join(" ")).collect();
         assert_eq!(rows, ["rear left coasts, brakes 3 m", "rear left coasts 1 m"]);
+    }
+
+    /// A course of the second variant stood among those of the first, since both had the same probability.
+    #[test]
+    fn rows_that_begin_with_a_share_stay_with_those_of_their_variant() {
+        let wording = Wording::english(UnitSystem::Si);
+        let courses = |name, rows: [[&str; 2]; 2]| {
+            let rows = rows.map(|row| row.map(str::to_owned)).into();
+            let table = Table::new("Courses", ["Probability", "Impulse"], rows);
+            Said { name, blocks: vec![Block::Table(table)] }
+        };
+        let said = [
+            courses("coasts", [["4.7 %", "3.9 kN s"], ["4.7 %", "4.0 kN s"]]),
+            courses("light", [["19.0 %", "3.0 kN s"], ["4.7 %", "3.6 kN s"]]),
+        ];
+        let blocks = beside_each_other(&said, &wording);
+        let rows = only_table(&blocks).rows.iter().map(|row| row[1].clone());
+        assert_eq!(rows.collect::<Vec<_>>(), ["coasts", "coasts", "light", "light"]);
     }
 }

@@ -221,6 +221,10 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
     let (class, source) = match prior.source {
         PriorSource::Given => (InputClass::Given, words.source_prior_given),
         PriorSource::Measured => (InputClass::Measured, words.source_prior_measured),
+        // How well it is known is left to the comparison with the drag itself.
+        PriorSource::Estimated if prior.latent == Latent::RoadFriction => {
+            (InputClass::Estimated, words.source_prior_drag)
+        }
         PriorSource::Estimated => (InputClass::Estimated, words.source_prior_rule),
         PriorSource::Assumed => (InputClass::Assumed, words.source_prior),
     };

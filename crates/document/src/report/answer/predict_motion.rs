@@ -9,7 +9,7 @@ use crate::report::answer::atlas::in_atlas;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::predict_force::applicability;
 use crate::report::answer::stills::forecast_still;
-use crate::report::answer::vehicle_inputs::vehicle_rows;
+use crate::report::answer::vehicle_inputs::{name_in_question, vehicle_rows};
 use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
@@ -30,7 +30,7 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let vehicle = wording.name(&report.vehicle);
+    let vehicle = name_in_question(&report.vehicle, &answer.analysis.vehicle, wording);
     let names = [("name", &*report.scenario), ("vehicle", &vehicle)];
     let question = fill(words.ask_motion, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];

@@ -10,7 +10,7 @@ use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::stills::simulation_stills;
 use crate::report::answer::tire_marks::computed_marks;
-use crate::report::answer::vehicle_inputs::vehicle_rows;
+use crate::report::answer::vehicle_inputs::{name_in_question, vehicle_rows};
 use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::method::Method;
 use crate::report::numbers::fill;
@@ -27,7 +27,7 @@ pub(super) fn part(
 ) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let vehicle = wording.name(&report.vehicle);
+    let vehicle = name_in_question(&report.vehicle, &answer.analysis.vehicle, wording);
     let names = [("name", &*report.name), ("vehicle", &vehicle)];
     let is_alone = is_alone(answer);
     let ask = if is_alone { words.ask_drive } else { words.ask_simulate };

@@ -2,7 +2,7 @@
 
 use crate::report::InputClass;
 use crate::report::flatten::{FlatRow, flatten_rounded};
-use crate::report::numbers::Wording;
+use crate::report::numbers::{Wording, fill};
 use crate::report::parts::InputRow;
 use impactlab_core::units::{Quantity, Unit, UnitSystem};
 use impactlab_core::vehicle::VehicleParameters;
@@ -31,6 +31,24 @@ pub fn vehicle_parameters(vehicle: &VehicleParameters, units: UnitSystem) -> Vec
         source: row.source,
     };
     rows.map(parameter).collect()
+}
+
+/// What a vehicle is called in a question; beside a name that says its mass, that of the collision if it is another.
+///
+/// - `name`: as the answer has it.
+pub(super) fn name_in_question(
+    name: &str,
+    vehicle: &VehicleParameters,
+    wording: &Wording,
+) -> String {
+    let name = wording.name(name);
+    match vehicle.has_mass_of_collision() {
+        true => {
+            let mass = wording.given(Quantity::Mass, vehicle.mass.mass_kg);
+            fill(wording.words.of_other_mass, &[("vehicle", &name), ("mass", &mass)])
+        }
+        false => name,
+    }
 }
 
 /// Every parameter with its source. What follows from a data sheet is told by the estimates of that,
@@ -112,6 +130,16 @@ mod tests {
     use crate::report::{Language, Paper, ReportDate, ReportSettings};
     use impactlab_core::units::UnitSystem;
     use impactlab_core::vehicle::{BuiltInVehicle, CrushStiffness, Preset};
+
+    /// The opinion on a car of 1500 kg spoke of “Reference car (multibody, 2000 kg)” alone.
+    #[test]
+    fn a_vehicle_of_another_mass_than_its_name_says_has_that_beside_it() {
+        let (car, wording) = (Preset::Reference.parameters(), Wording::english(UnitSystem::Si));
+        assert_eq!(name_in_question(&car.name, &car, &wording), car.name);
+        let lighter = car.clone().with_mass(1500.0, None);
+        let expected = format!("{}, here of 1500 kg", car.name);
+        assert_eq!(name_in_question(&lighter.name, &lighter, &wording), expected);
+    }
 
     #[test]
     fn how_stiff_a_face_is_has_its_face_and_its_unit() {

@@ -76,6 +76,7 @@ pub(super) const WORDS: Words = Words {
         sicher ist das?",
     ask_motion: "Frage: Wohin bewegt sich das gestoßene Fahrzeug ({vehicle}) nach dem Aufprall „{name}“ \
         nach dem Bewegungsnetz, und wie sicher ist das?",
+    of_other_mass: "{vehicle}, hier mit {mass}",
     ask_reconstruct: "Frage: Wie schnell waren beide Fahrzeuge bei dem Zusammenstoß „{name}“ vor dem Aufprall, \
         nach den vorgefundenen Spuren?",
     ask_single_car: "Frage: Wie schnell war das Fahrzeug im Fall „{name}“ am Anfang der Bewegung, nach den \
@@ -206,6 +207,7 @@ pub(super) const WORDS: Words = Words {
     source_prior_given: "Vorabverteilung; mit den Anknüpfungstatsachen oder durch das Fahrzeug vorgegeben",
     source_prior_measured: "Vorabverteilung; gemessen, nach den Anknüpfungstatsachen",
     source_prior_rule: "Vorabverteilung; Regel des Datenblatts mit ihrer Streuung",
+    source_prior_drag: "Vorabverteilung; Regel aus der Verzögerung blockierter Räder, die selbst verglichen wird",
     source_prior: "Vorabverteilung; Vorgabewert des Programms",
     source_evidence_sigma: "Anknüpfungstatsachen",
     source_default_sigma: "Anknüpfungstatsachen; ± vom Programm, da dort nicht genannt",

@@ -75,6 +75,7 @@ pub(super) const WORDS: Words = Words {
         network, and how sure is that?",
     ask_motion: "Question: where does the struck vehicle ({vehicle}) go after the impact “{name}”, by the \
         response network, and how sure is that?",
+    of_other_mass: "{vehicle}, here of {mass}",
     ask_reconstruct: "Question: how fast were both cars in the collision “{name}” before the impact, by what \
         was found?",
     ask_single_car: "Question: how fast was the car of “{name}” at the start of the motion, by what was found?",
@@ -198,6 +199,7 @@ pub(super) const WORDS: Words = Words {
     source_prior_given: "prior; given with the evidence, or by the chosen vehicle",
     source_prior_measured: "prior; measured, by the evidence",
     source_prior_rule: "prior; rule of the data sheet with its scatter",
+    source_prior_drag: "prior; rule from the drag of locked wheels, which is compared itself",
     source_prior: "prior; default of the program",
     source_evidence_sigma: "evidence",
     source_default_sigma: "evidence; ± is that of the program, where the evidence says none",
