@@ -221,9 +221,12 @@ fn inertia(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_
         }
         // The database gives 0.06 m² × m in the mean for cars, negative values for many pickups, and
         // not the direction of its z axis.
-        _ => {
-            absolute(0.0, 0.05 * mass, "0 ± 0.05 m² × m: sources differ in its sign", NHTSA_INERTIA)
-        }
+        _ => absolute(
+            0.0,
+            0.05 * mass,
+            "0 ± 0.05 m² × mass: sources differ in its sign",
+            NHTSA_INERTIA,
+        ),
     }
 }
 
@@ -231,9 +234,12 @@ fn suspension(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues
     use SheetQuantity as Q;
     let scale = model_scale(class, values);
     match quantity {
-        Q::SprungMass => {
-            absolute(0.85 * values.get(Q::Mass), 0.035 * values.get(Q::Mass), "0.85 m", MULTIBODY)
-        }
+        Q::SprungMass => absolute(
+            0.85 * values.get(Q::Mass),
+            0.035 * values.get(Q::Mass),
+            "0.85 × mass",
+            MULTIBODY,
+        ),
         Q::WheelRadius => relative(
             class.pick([0.33, 0.31, 0.36, 0.36, 0.34]) * scale,
             0.06,

@@ -445,7 +445,7 @@ pub(super) const WORDS: Words = Words {
     not_drawn: "Dieses Programm zeichnet keine Bilder: {caption}",
     scene_alt: "{title}. Fahrzeuge auf dem Boden. Dargestellt: {names}.",
     axes_alt: "{title}. Waagerechte Achse: {x}. Senkrechte Achse: {y}. Dargestellt: {names}.",
-    car_alt: "Bei {time} {name}: X {x}, Y {y}, Kurs {heading}.",
+    car_alt: "Bei {time} {name}: X {x}, Y {y}, Gierwinkel {heading}.",
     line_alt: "{name}: von {y0} bei {x0} bis {y1} bei {x1}; kleinster Wert {low} bei {at_low}, größter {high} bei {at_high}.",
     place_alt: "{name}: von ({x0}; {y0}) bis ({x1}; {y1}).",
     band_alt: "{name}: {low} bis {high} bei {x}.",

@@ -696,10 +696,10 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("dynamic index of the class × m l_f l_r", "bezogene Gierträgheit der Klasse × m l_f l_r"),
     ("m (0.41 × track)²", "m (0.41 × Spurweite)²"),
     (
-        "0 ± 0.05 m² × m: sources differ in its sign",
-        "0 ± 0.05 m² × m: die Quellen unterscheiden sich im Vorzeichen",
+        "0 ± 0.05 m² × mass: sources differ in its sign",
+        "0 ± 0.05 m² × Masse: die Quellen unterscheiden sich im Vorzeichen",
     ),
-    ("0.85 m", "0.85 m"),
+    ("0.85 × mass", "0.85 × Masse"),
     ("by class, in the scale of the width", "nach Klasse, im Maßstab der Breite"),
     (
         "by class, in the scale of the width squared",
