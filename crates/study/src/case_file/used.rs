@@ -166,13 +166,17 @@ pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
     }
 }
 
+/// A path as it is read: what was written into the file of a case by hand may begin at the working folder.
+fn as_read(path: PathBuf) -> PathBuf {
+    std::path::absolute(&path).unwrap_or(path)
+}
+
 impl CaseFile {
     /// The files and folders that questions and views name, with those that a site names and the other parts of
-    /// a file of results. One that is not
-    /// there counts if it was there when the case was saved.
+    /// a file of results. One that is not there counts if it was there when the case was saved.
     pub fn used_paths(&self) -> Vec<PathBuf> {
         let known: HashSet<&Path> = self.files.iter().map(|file| file.path.as_path()).collect();
-        let mut paths = self.named_paths();
+        let mut paths: Vec<PathBuf> = self.named_paths().into_iter().map(as_read).collect();
         let of_sites: Vec<PathBuf> = paths.iter().flat_map(|path| files_of_site(path)).collect();
         let parts: Vec<PathBuf> = paths.iter().flat_map(|path| parts_beside(path)).collect();
         paths.extend(of_sites);
@@ -308,6 +312,17 @@ impl CaseFile {
 mod tests {
     use super::*;
     use crate::{ImpactRequest, ReconstructRequest, ScenarioChoice};
+
+    /// “Materials: no files but the case itself” stood in the report of a case whose site was read.
+    #[test]
+    fn a_file_that_is_read_from_the_working_folder_is_used() {
+        let question =
+            |path: &str| Request::from(ImpactRequest::new(ScenarioChoice::File(path.into())));
+        let questions = ["Cargo.toml", "pit-right-rear"].map(question).into();
+        let variant = Variant { name: "a".to_owned(), questions, ..Variant::default() };
+        let used = CaseFile::new("case", variant).used_paths();
+        assert_eq!(used, [std::path::absolute("Cargo.toml").unwrap()]);
+    }
 
     /// `check` said nothing of evidence that a case has and that no question uses.
     #[test]

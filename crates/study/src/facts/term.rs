@@ -243,7 +243,7 @@ terms! {
     ForecastPlace: "mean of the forecast (X; Y)", "Mittel der Vorhersage (X; Y)";
     RivalPlace: "by the other method (X; Y)", "nach dem anderen Verfahren (X; Y)";
     RivalHeading: "change of heading by the other method",
-        "Änderung der Richtung nach dem anderen Verfahren";
+        "Änderung des Gierwinkels nach dem anderen Verfahren";
     Apart: "distance between the two", "Abstand der beiden";
     RivalRegion: "smallest region of the forecast that holds the other",
         "kleinste Fläche der Vorhersage, die das andere enthält";

@@ -333,9 +333,9 @@ pub(super) const WORDS: Words = Words {
     method_response: "Bewegungsnetz",
     method_response_text: "Jeder Schritt der Bewegung ist einer des 4DOF-Modells mit einer begrenzten zusätzlichen \
         Beschleunigung: Effekte bekannter Form mit gelernten Stärken und ein Rest aus einem \
-        neuronalen Netz. Mindestens 240 ganze Bewegungen werden verfolgt, reihum mit den gezogenen \
-        Kräften und Fahrzeugen; was das Netz offenlässt, wird für jede gezogen. Außerhalb des \
-        Gelernten tritt das 4DOF-Modell mit seinen gemessenen Fehlern an seine Stelle.",
+        neuronalen Netz. Ganze Bewegungen werden verfolgt, reihum mit den gezogenen Kräften und \
+        Fahrzeugen, mindestens 240, wo ein Fahrzeug für sich allein verfolgt wird; was das Netz \
+        offenlässt, wird für jede gezogen. Außerhalb des Gelernten tritt das 4DOF-Modell mit seinen gemessenen Fehlern an seine Stelle.",
     limits_response: "Das mitgelieferte hat aus simulierten Bewegungen von 57 Fahrzeugen von bis zu 12 s gelernt. Die \
         Auslaufstrecke wurde mit keiner Aufzeichnung verglichen.",
     method_reconstruction: "Rekonstruktion aus Spuren",

@@ -323,9 +323,9 @@ pub(super) const WORDS: Words = Words {
     method_response: "Response network",
     method_response_text: "Each step of the motion is one of the 4DOF model with a bounded acceleration added: \
         effects of known form with learned strengths, and a remainder by a neural network. \
-        Whole motions are followed, at least 240, with the forces and vehicles that were drawn in turn; \
-        what the network leaves uncertain is drawn for each. Outside of what it learned from, the 4DOF \
-        model with its measured errors takes its place.",
+        Whole motions are followed with the forces and vehicles that were drawn in turn, at least 240 where one \
+        vehicle is followed by itself; what the network leaves uncertain is drawn for each. Outside of what it \
+        learned from, the 4DOF model with its measured errors takes its place.",
     limits_response: "The shipped one learned from simulated motions of 57 cars of up to 12 s. The distance over which \
         a car rolls out has not been compared with a record.",
     method_reconstruction: "Reconstruction from evidence",

@@ -48,8 +48,10 @@ pub(in crate::report) fn opinion_of_forecast(
             let limit = format.given(Quantity::Time, rest.limit_s);
             let distance = format.drawn_in_words(Quantity::Length, &rest.distance_m);
             let values = [("share", &*share), ("limit", &*limit), ("distance", &*distance)];
-            sentences.push(fill(words.comes_to_rest, &values));
-            if !rest.is_nearly_all_at_rest() {
+            if rest.is_nearly_all_at_rest() {
+                sentences.push(fill(words.comes_to_rest, &values));
+            } else {
+                sentences.push(fill(words.partly_at_rest, &values));
                 sentences.push(words.lower_bounds.to_owned());
             }
         }

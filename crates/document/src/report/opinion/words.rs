@@ -44,6 +44,7 @@ pub(super) struct OpinionWords {
     pub turns: &'static str,
     pub turns_of_courses: &'static str,
     pub comes_to_rest: &'static str,
+    pub partly_at_rest: &'static str,
     pub lower_bounds: &'static str,
     pub at_rest: &'static str,
     pub still_moves: &'static str,
@@ -122,6 +123,8 @@ const EN: OpinionWords = OpinionWords {
     turns_of_courses: "Courses of events are told apart by the largest turn on the way, the other probabilities of a turn are those \
         at the end.",
     comes_to_rest: "It comes to rest within {limit} in {share} of the draws, after a path of {distance}.",
+    partly_at_rest: "It comes to rest within {limit} in {share} of the draws; until then, or until it is followed no \
+        further, it covers {distance}.",
     lower_bounds: "Since less than 95 % of the draws come to rest in that time, upper ends of times and distances are \
         lower bounds.",
     at_rest: "It is at rest {time} after the first contact.",
@@ -198,6 +201,8 @@ const DE: OpinionWords = OpinionWords {
         einer Wahrscheinlichkeit von {half} um 180° oder mehr.",
     turns_of_courses: "Die Geschehensabläufe sind nach der größten Drehung während der Bewegung unterschieden, die übrigen \
         Wahrscheinlichkeiten einer Drehung gelten für das Ende.",
+    partly_at_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand; bis dahin, oder bis es nicht \
+        weiter verfolgt wird, legt es {distance} zurück.",
     comes_to_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand, nach einem Weg von \
         {distance}.",
     lower_bounds: "Da in dieser Zeit weniger als 95 % der Ziehungen zum Stillstand kommen, sind die oberen Enden von \
