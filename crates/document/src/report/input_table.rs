@@ -290,6 +290,21 @@ mod tests {
         assert_eq!(small.rows[1], ["brakes", "f", "f kg", "given", "another test"]);
     }
 
+    /// Two titles stood above columns in which nothing was.
+    #[test]
+    fn no_column_is_empty_below_its_title() {
+        let wording = Wording::english(UnitSystem::Si);
+        let of = |group: &str, label: &str| InputRow {
+            group: group.to_owned(),
+            ..row(label, wording.words.source_question)
+        };
+        let rows = [of("car", "a"), of("road", "b")];
+        let block = said_table("said", &rows.iter().collect::<Vec<_>>(), &wording);
+        let Block::Table(table) = &block else { panic!("{block:?}") };
+        assert_eq!(table.columns.len(), 3);
+        assert_eq!(table.rows, [["car", "a", "a kg"], ["road", "b", "b kg"]]);
+    }
+
     #[test]
     fn what_is_assumed_for_one_reason_stands_once() {
         let wording = Wording::english(UnitSystem::Si);
