@@ -87,21 +87,6 @@ fn a_reconstruction_has_an_opinion_with_its_materials() {
     assert!(says(document, &case.files[0].sha256));
 }
 
-/// The annex alone said that intervals of the heading and of the yaw rate are known to be too narrow.
-#[test]
-fn a_figure_whose_intervals_held_too_seldom_says_so_beside_it() {
-    let (_, _, document, _) = staged();
-    let all = tables(document);
-    let value = |name: &str| {
-        let mut rows = all.iter().flat_map(|table| &table.rows);
-        rows.find(|row| row[0] == name).unwrap_or_else(|| panic!("no {name}"))[1].clone()
-    };
-    for name in ["relative heading of the cars", "yaw rate after the impact"] {
-        assert!(value(name).contains("; when tried, such intervals held in 8"), "{}", value(name));
-    }
-    assert!(!value("closing speed").contains("when tried"), "{}", value("closing speed"));
-}
-
 /// Readers by ear get the file that they need: PDF/UA-1, with a title and headers of rows.
 #[test]
 fn the_pdf_says_that_it_can_be_read_by_ear() {

@@ -63,7 +63,7 @@ pub(super) fn part(
     let mut opinion = opinion_of_reconstruction(report, &question, context);
     let doubts = doubts(&answer.report, wording);
     if doubts.is_empty() {
-        blocks.extend(too_narrow(report, &mut opinion, context));
+        blocks.extend(too_narrow(report.held_too_seldom(), &mut opinion, context));
     }
     blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
     if !doubts.is_empty() {
@@ -121,7 +121,7 @@ fn doubts(report: &Answer<ReconstructReport>, wording: &Wording) -> Vec<&'static
 /// Says beside each figure of the opinion whose intervals held too seldom when they were tried how often they
 /// did, and which these are; none where all held.
 fn too_narrow(
-    report: &ReconstructReport,
+    held_too_seldom: Vec<HeldTooSeldom>,
     opinion: &mut PartOpinion,
     context: Context<'_>,
 ) -> Option<Block> {
@@ -136,7 +136,7 @@ fn too_narrow(
         }
         fill(words.too_narrow_item, &values)
     };
-    let items: Vec<String> = report.held_too_seldom().into_iter().map(item).collect();
+    let items: Vec<String> = held_too_seldom.into_iter().map(item).collect();
     let text = || fill(words.too_narrow, &[("list", &items.join("; "))]);
     (!items.is_empty()).then(|| Block::paragraph(text()))
 }
@@ -167,4 +167,50 @@ fn pictures(
         ));
     }
     pictures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::answer::stills::Grounds;
+    use crate::report::opinion::Rank;
+    use crate::report::paths::ShownPaths;
+    use impactlab_core::units::UnitSystem;
+    use impactlab_study::{Measured, Measurement};
+
+    /// The annex alone said that intervals of the heading and of the yaw rate are known to be too narrow.
+    #[test]
+    fn a_figure_whose_intervals_held_too_seldom_says_so_beside_it() {
+        let tried = Measurement::shipped(Measured::ReconstructionOfEverything).unwrap();
+        let names = ["relative heading of the cars", "yaw rate after the impact", "closing speed"];
+        let [heading, yaw_rate, _] = names.map(|name| {
+            let held = tried.held_in_all.iter().find(|held| held.quantity == name).unwrap();
+            HeldTooSeldom { held, is_of_everything: name.contains("heading") }
+        });
+        let mut opinion = PartOpinion {
+            rank: Rank::Reconstruction,
+            question: String::new(),
+            answer: String::new(),
+            courses: Vec::new(),
+            figures: names.map(|name| [name.to_owned(), "1".to_owned()]).into(),
+            held: None,
+            is_doubtful: false,
+            hinges: Vec::new(),
+        };
+        let (wording, paths) = (Wording::english(UnitSystem::Si), ShownPaths::default());
+        let grounds = Grounds::default();
+        let context = Context { wording: &wording, paths: &paths, grounds: &grounds };
+        let block = too_narrow(vec![heading, yaw_rate], &mut opinion, context);
+        let said = format!("{:?}", block.expect("two are too narrow"));
+        assert!(said.contains(names[0]) && said.contains(names[1]), "{said}");
+        let [of_heading, of_yaw_rate, of_closing] = &opinion.figures[..] else {
+            panic!("{:?}", opinion.figures)
+        };
+        let held = "such intervals held in 80.0 % of 40 cases";
+        let known = wording.words.with_everything_known;
+        assert!(of_heading[1].ends_with(held) && of_heading[1].contains(known), "{of_heading:?}");
+        assert!(of_yaw_rate[1].ends_with("held in 87.5 % of 40 cases"), "{of_yaw_rate:?}");
+        assert_eq!(of_closing[1], "1");
+        assert!(too_narrow(Vec::new(), &mut opinion, context).is_none());
+    }
 }
