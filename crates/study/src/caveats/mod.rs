@@ -1,6 +1,7 @@
 //! What an answer rests on and what restricts it.
 
 pub(crate) mod assumed;
+pub(crate) mod bodies;
 pub(crate) mod driver;
 pub(crate) mod other_vehicle;
 pub(crate) mod restrictions;

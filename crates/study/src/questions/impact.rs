@@ -4,7 +4,7 @@ use crate::caveats::assumed;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::caveats::restrictions;
+use crate::caveats::{bodies, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
 use crate::{
     Answer, ImpulseRival, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice,
@@ -212,7 +212,7 @@ impl Question for ImpactRequest {
         let caveats: Caveats = assumed::first_touch(&geometry)
             .into_iter()
             .chain(assumed::contact_default(&scenario, &impact))
-            .chain(restrictions::backwards(&scenario))
+            .chain(bodies::doubtful(&scenario))
             .chain(restrictions::overlap_caveat(&geometry))
             .chain(restrictions::energy_gain_caveat(solution.dissipated_energy_j))
             .chain(beside)

@@ -492,6 +492,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("overlap of the outlines", "Überdeckung der Umrisse"),
     ("energy lost in the contact", "Energieverlust im Kontakt"),
     ("force at the end as a share of the peak", "Kraft am Ende als Anteil der Spitze"),
+    ("radius of gyration over the length", "Trägheitsradius als Anteil der Länge"),
     (
         "standard error of an end over the width of the interval",
         "Standardfehler eines Intervallendes als Anteil der Breite",

@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{ForceForecast, ForecastSettings, Mode};
 use crate::ask::checks::{check_all, check_count};
-use crate::caveats::restrictions;
 use crate::caveats::unused::{by_force_network, contact_by_force_network};
+use crate::caveats::{bodies, restrictions};
 use crate::questions::simulate::dataset::take_case;
 use crate::{
     Answer, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
@@ -193,7 +193,7 @@ impl ForceQuestion {
                 unused = by_force_network(choice, &scenario)?;
                 contact = Some(scenario.contact);
                 let geometry = scenario.geometry().ok();
-                unused.extend(restrictions::backwards(&scenario));
+                unused.extend(bodies::doubtful(&scenario));
                 unused.extend(geometry.as_ref().and_then(assumed::first_touch));
                 overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
                 let numbers = ForceScenario::from_scenario(&scenario);

@@ -16,7 +16,7 @@ use crate::caveats::other_vehicle::other_vehicles;
 use crate::caveats::unused::{
     by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair, vehicle_of_fixed,
 };
-use crate::caveats::{assumed, restrictions};
+use crate::caveats::{assumed, bodies, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
 use crate::questions::recorded_pair::load_pair;
 use crate::questions::simulate::dataset::take_case;
@@ -475,7 +475,7 @@ fn contact_of(
     caveats: &mut Caveats,
 ) -> (Option<MomentumReport>, Option<Caveat>) {
     let geometry = scenario.geometry().ok();
-    caveats.extend(restrictions::backwards(scenario));
+    caveats.extend(bodies::doubtful(scenario));
     caveats.extend(geometry.as_ref().and_then(assumed::first_touch));
     let overlap = geometry.as_ref().and_then(restrictions::overlap_caveat);
     let Ok(impact) = scenario.impact() else { return (None, overlap) };

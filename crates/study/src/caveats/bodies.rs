@@ -1,0 +1,103 @@
+//! Numbers of the vehicles of a scenario that hardly are those of vehicles.
+
+use crate::caveats::restrictions;
+use impactlab_core::collision::{Role, Scenario};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
+use impactlab_core::units::{Phrase, PhraseValue, Quantity};
+
+/// Radius of gyration about the vertical axis as a share of the length. Of cars, vans and trucks it is 0.25 to
+/// 0.33: those of the library have 0.28 to 0.32, and an even rod has 0.29.
+const GYRATION_OF_LENGTH: [f64; 2] = [0.2, 0.4];
+
+/// Mass from which a body stands for a barrier, whose inertia is as large as one likes, kg.
+const BARRIER_KG: f64 = 1e5;
+
+/// What the numbers of both vehicles say that a slip of the hand or of a unit explains better.
+pub(crate) fn doubtful(scenario: &Scenario) -> Vec<Caveat> {
+    let uneven = Role::ALL.into_iter().filter_map(|role| uneven_caveat(scenario, role));
+    restrictions::backwards(scenario).into_iter().chain(uneven).collect()
+}
+
+/// A yaw inertia that no vehicle of that mass and length has.
+fn uneven_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
+    let vehicle = scenario.vehicle(role);
+    if vehicle.fixed.is_some() || vehicle.mass_kg >= BARRIER_KG {
+        return None;
+    }
+    let [low, high] = GYRATION_OF_LENGTH;
+    let share = (vehicle.yaw_inertia_kg_m2 / vehicle.mass_kg).sqrt() / vehicle.length_m;
+    if (low..=high).contains(&share) {
+        return None;
+    }
+    let (which, subject) = match role {
+        Role::Struck => {
+            (Phrase::new("the struck vehicle", "beim gestoßenen Fahrzeug"), CaveatSubject::Vehicle)
+        }
+        Role::Striking => (
+            Phrase::new("the striking vehicle", "beim stoßenden Fahrzeug"),
+            CaveatSubject::Striking,
+        ),
+    };
+    let text = Phrase::new(
+        "of {0}, a yaw inertia of {1} does not fit a mass of {2} and a length of {3}: the radius of gyration is \
+         {4} of the length, and of cars 25 to 33 %; one of the three may be in another unit",
+        "{0} passt das Gierträgheitsmoment von {1} nicht zur Masse von {2} und zur Länge von {3}: Der \
+         Trägheitsradius beträgt {4} der Länge, bei Fahrzeugen sind es 25 bis 33 %; eine der drei Angaben hat \
+         vielleicht eine andere Einheit",
+    )
+    .with(PhraseValue::phrase(which))
+    .with(PhraseValue::three_digits(Quantity::MomentOfInertia, vehicle.yaw_inertia_kg_m2))
+    .with(PhraseValue::three_digits(Quantity::Mass, vehicle.mass_kg))
+    .with(PhraseValue::three_digits(Quantity::Length, vehicle.length_m))
+    .with(PhraseValue::Share(share));
+    let caveat = Caveat::new(CaveatKind::DoubtfulData, text)
+        .with_value("radius of gyration over the length", share)
+        .with_range(GYRATION_OF_LENGTH);
+    Some(Caveat { subject: Some(subject), ..caveat })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::built_in_vehicle;
+    use std::path::Path;
+
+    #[test]
+    fn an_inertia_that_does_not_fit_mass_and_length_is_named() {
+        assert!(doubtful(&Scenario::example()).is_empty());
+        let change = |change: fn(&mut Scenario)| {
+            let mut scenario = Scenario::example();
+            change(&mut scenario);
+            doubtful(&scenario)
+        };
+        // Tonnes as kilograms, kilograms as pounds, an inertia in another unit, feet as metres.
+        let slips: [fn(&mut Scenario); 4] = [
+            |scenario| scenario.striking.mass_kg /= 1000.0,
+            |scenario| scenario.striking.mass_kg *= 0.453_592_37,
+            |scenario| scenario.striking.yaw_inertia_kg_m2 /= 1.355_817_9,
+            |scenario| scenario.striking.length_m /= 0.3048,
+        ];
+        let found = slips.map(change);
+        for (at, n) in [(0, 1), (1, 1), (2, 0), (3, 1)] {
+            assert_eq!(found[at].len(), n, "{at}: {:?}", found[at]);
+        }
+        let light = &found[0][0];
+        assert!(light.is_warning());
+        assert_eq!(light.subject, Some(CaveatSubject::Striking));
+        let words =
+            "of the striking vehicle, a yaw inertia of 3600 kg m² does not fit a mass of 2 kg and";
+        assert!(light.text.starts_with(words), "{light}");
+    }
+
+    #[test]
+    fn cars_and_barriers_are_as_they_are() {
+        let barrier = Scenario::preset_or_file(Path::new("carpenter-welcher-barrier"));
+        assert!(doubtful(&barrier.unwrap()).is_empty());
+        for name in ["toyota-corolla-2020", "ford-explorer-2004"] {
+            let vehicle = built_in_vehicle(name).unwrap();
+            let mut scenario = Scenario::example();
+            scenario.struck.take(&vehicle);
+            assert!(doubtful(&scenario).is_empty(), "{name}");
+        }
+    }
+}
