@@ -1,9 +1,11 @@
-//! Numbers of the vehicles of a scenario that hardly are those of vehicles.
+//! Numbers of vehicles, of a scenario or of a data sheet, that hardly are those of vehicles.
 
 use crate::caveats::restrictions;
 use impactlab_core::collision::{Role, Scenario};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
+use impactlab_core::vehicle::VehicleParameters;
+use impactlab_core::vehicle::sheet::Unusual;
 
 /// Radius of gyration about the vertical axis as a share of the length. Of cars, vans and trucks it is 0.25 to
 /// 0.33: those of the library have 0.28 to 0.32, and an even rod has 0.29.
@@ -16,6 +18,40 @@ const BARRIER_KG: f64 = 1e5;
 pub(crate) fn doubtful(scenario: &Scenario) -> Vec<Caveat> {
     let uneven = Role::ALL.into_iter().filter_map(|role| uneven_caveat(scenario, role));
     restrictions::backwards(scenario).into_iter().chain(uneven).collect()
+}
+
+/// What the data sheet of a vehicle states and no car of its other figures has.
+///
+/// - `subject`: which vehicle of the question it is.
+pub(crate) fn unusual(
+    vehicle: &VehicleParameters,
+    subject: CaveatSubject,
+) -> impl Iterator<Item = Caveat> {
+    let caveat = move |text: Phrase| Caveat {
+        subject: Some(subject),
+        ..Caveat::new(CaveatKind::DoubtfulData, text)
+    };
+    unusual_phrases(vehicle).into_iter().map(caveat)
+}
+
+/// The same in words.
+pub(crate) fn unusual_phrases(vehicle: &VehicleParameters) -> Vec<Phrase> {
+    let phrase = |unusual: &Unusual| {
+        let Unusual { quantity, stated, by_rule } = *unusual;
+        let unit = Quantity::from_si_symbol(quantity.unit()).unwrap_or(Quantity::Ratio);
+        Phrase::new(
+            "{0}: {1} {2}, where a car of its other figures has about {3}; it may be in another unit, or twice \
+             or half of what is meant",
+            "{0}: {1} {2}, wo ein Fahrzeug mit den übrigen Angaben etwa {3} hat; vielleicht eine andere Einheit, \
+             oder das Doppelte oder die Hälfte des Gemeinten",
+        )
+        .with(PhraseValue::Name(vehicle.name.clone()))
+        .with(PhraseValue::Term(quantity.label().to_owned()))
+        .with(PhraseValue::three_digits(unit, stated))
+        .with(PhraseValue::three_digits(unit, by_rule))
+    };
+    let unusual = vehicle.sheet.as_ref().map_or_else(Vec::new, |sheet| sheet.unusual());
+    unusual.iter().map(phrase).collect()
 }
 
 /// A yaw inertia that no vehicle of that mass and length has.
@@ -59,7 +95,7 @@ fn uneven_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::vehicle::built_in_vehicle;
+    use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass, built_in_vehicle};
     use std::path::Path;
 
     #[test]
@@ -87,6 +123,20 @@ mod tests {
         let words =
             "of the striking vehicle, a yaw inertia of 3600 kg m² does not fit a mass of 2 kg and";
         assert!(light.text.starts_with(words), "{light}");
+    }
+
+    #[test]
+    fn a_data_sheet_with_a_figure_in_another_unit_is_named() {
+        let vehicle = DataSheet::new("my car", VehicleClass::Car)
+            .with(SheetQuantity::Mass, 680.0)
+            .with(SheetQuantity::Length, 4.7)
+            .with(SheetQuantity::Width, 1.8)
+            .vehicle();
+        let found: Vec<Caveat> = unusual(&vehicle, CaveatSubject::Striking).collect();
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].is_warning() && found[0].subject == Some(CaveatSubject::Striking));
+        let words = "my car: mass 680 kg, where a car of its other figures has about 1574 kg;";
+        assert!(found[0].text.starts_with(words), "{}", found[0]);
     }
 
     #[test]

@@ -10,8 +10,10 @@ mod file;
 mod write;
 
 mod library;
+mod unusual;
 
 pub use data_sheet::{DataSheet, Estimate};
 pub use library::LibraryVehicle;
 pub use quantity::{Drive, SheetQuantity, VehicleClass};
 pub use rules::{Rule, Scatter};
+pub use unusual::Unusual;

@@ -117,6 +117,11 @@ fn model_scale(class: VehicleClass, values: &SheetValues<'_>) -> f64 {
     if scale < 0.5 { scale } else { 1.0 }
 }
 
+/// Whether a vehicle is a model of a car.
+pub(super) fn is_model(class: VehicleClass, values: &SheetValues<'_>) -> bool {
+    model_scale(class, values) < 1.0
+}
+
 /// One text for the vehicles of a class, and one for models of them.
 fn of_scale(scale: f64, usual: &'static str, model: &'static str) -> &'static str {
     if scale < 1.0 { model } else { usual }

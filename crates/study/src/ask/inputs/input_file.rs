@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::case_file::CaseFile;
+use crate::caveats::bodies::unusual_phrases;
 use crate::questions::reconstruct::assumed::unused;
 use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
@@ -19,7 +20,7 @@ use impactlab_core::error_chain;
 use impactlab_core::site::{
     CloudFormat, CloudSummary, Site, SiteError, read_drawing, read_picture, survey_cloud,
 };
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_networks::nn::kind_of_file;
 use impactlab_networks::response::evaluate::Comparison;
@@ -226,6 +227,10 @@ impl InputFile {
             }
             Self::Cloud(summary) => {
                 Ok(summary.contents().into_iter().chain(summary.unit_note.clone()).collect())
+            }
+            Self::Vehicle(vehicle) => {
+                let phrases = unusual_phrases(vehicle).into_iter();
+                Ok(phrases.map(|phrase| phrase.say(&NumberFormat::default())).collect())
             }
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),

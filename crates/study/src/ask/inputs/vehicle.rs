@@ -6,6 +6,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::caveats::bodies::unusual;
 use crate::{InputKind, StudyError};
 use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_core::vehicle::{
@@ -73,8 +74,18 @@ pub(crate) enum OpenVehicle<'a> {
     Unknown,
 }
 
-/// The struck vehicle; one that nobody named is added to the caveats.
+/// The struck vehicle; one that nobody named is added to the caveats, and what no car has.
 pub(crate) fn struck_vehicle(
+    choice: &VehicleChoice,
+    open: &OpenVehicle<'_>,
+    caveats: &mut Caveats,
+) -> Result<VehicleParameters, StudyError> {
+    let vehicle = named_or_learned(choice, open, caveats)?;
+    caveats.extend(unusual(&vehicle, CaveatSubject::Vehicle));
+    Ok(vehicle)
+}
+
+fn named_or_learned(
     choice: &VehicleChoice,
     open: &OpenVehicle<'_>,
     caveats: &mut Caveats,
@@ -110,7 +121,7 @@ fn name_of(name: &str) -> Phrase {
     Phrase::of(PhraseValue::Name(name.to_owned()))
 }
 
-/// The striking vehicle; one that nobody named is added to the caveats.
+/// The striking vehicle; one that nobody named is added to the caveats, and what no car has.
 ///
 /// - `named`: the vehicle that the scenario names, if it names one.
 pub(crate) fn striking_vehicle(
@@ -119,6 +130,7 @@ pub(crate) fn striking_vehicle(
     caveats: &mut Caveats,
 ) -> Result<VehicleParameters, StudyError> {
     if let Some(vehicle) = choice.chosen()? {
+        caveats.extend(unusual(&vehicle, CaveatSubject::Striking));
         return Ok(vehicle);
     }
     if let Some(name) = named {

@@ -9,6 +9,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::checks::check_count;
+use crate::caveats::bodies::unusual as unusual_sheet;
 use crate::caveats::restrictions::slope_caveat;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
 use crate::questions::reconstruct::badges::{
@@ -27,7 +28,7 @@ use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::Caveats;
+use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use impactlab_reconstruct::domain::{check_damage, outside_domain};
 use impactlab_reconstruct::evaluate::KnownEvidence;
 use impactlab_reconstruct::evidence::{Evidence, EvidenceKind};
@@ -221,6 +222,18 @@ impl ReconstructRequest {
         Ok(Cars::new(evidence, struck.as_ref(), striking.as_ref()))
     }
 
+    /// What the data sheets of the vehicles state and no car has.
+    fn unusual(&self) -> Result<Vec<Caveat>, StudyError> {
+        let mut found = Vec::new();
+        for (choice, subject) in
+            [(&self.vehicle, CaveatSubject::Vehicle), (&self.striking, CaveatSubject::Striking)]
+        {
+            let chosen = choice.chosen()?;
+            found.extend(chosen.iter().flat_map(|vehicle| unusual_sheet(vehicle, subject)));
+        }
+        Ok(found)
+    }
+
     /// The forward model of the case.
     ///
     /// # Errors
@@ -381,7 +394,7 @@ impl Question for ReconstructRequest {
             vehicle: "the struck car".to_owned(),
             source,
         })?;
-        let outside = outside_domain(&evidence, cars, model.zones());
+        let outside = [outside_domain(&evidence, cars, model.zones()), self.unusual()?].concat();
         let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
         let (mut target, mut particles, flow) = self.sampled(&evidence, model, None, observer)?;
         let why_not = WhyNot::of(self.one_contact, &evidence, target.model(), flow.is_break());

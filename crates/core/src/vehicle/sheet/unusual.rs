@@ -1,0 +1,113 @@
+//! What a data sheet states that no car of its other figures has.
+
+use crate::vehicle::sheet::{DataSheet, Rule, SheetQuantity as Q};
+
+use super::rules::is_model;
+
+/// How many standard deviations of its rule a stated value lies away from it at least.
+const FAR: f64 = 4.0;
+
+/// Factor between a stated value and its rule at least: that of miles and kilometres. Vehicles of the library
+/// stay within 1.2, a loaded van within 1.5; a pound for a kilogram and a diameter for a radius are beyond.
+const FACTOR: f64 = 1.6;
+
+/// Width from which a vehicle is a truck or a bus, of which the rules know nothing, m.
+const TRUCK_WIDTH_M: f64 = 2.2;
+
+/// What is compared: what size, mass and axles of a car decide.
+const COMPARED: [Q; 8] = [
+    Q::Mass,
+    Q::Wheelbase,
+    Q::Track,
+    Q::FrontOverhang,
+    Q::CgHeight,
+    Q::YawInertia,
+    Q::SprungMass,
+    Q::WheelRadius,
+];
+
+/// A stated quantity that the rest of the sheet contradicts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unusual {
+    /// Which quantity.
+    pub quantity: Q,
+    /// What is stated, SI.
+    pub stated: f64,
+    /// What its rule makes of the quantities before it, SI.
+    pub by_rule: f64,
+}
+
+impl DataSheet {
+    /// The stated quantities that lie far from what cars of that size have, as one in another unit does. Those
+    /// of models of cars and of trucks are not judged, nor is a sheet without length and width.
+    pub fn unusual(&self) -> Vec<Unusual> {
+        let sized = self.known(Q::Length).and(self.known(Q::Width));
+        let Some(width_m) = sized else { return Vec::new() };
+        let values = self.resolve(|_, _| {});
+        if width_m > TRUCK_WIDTH_M || is_model(self.class, &values) {
+            return Vec::new();
+        }
+        let judge = |quantity: Q| {
+            let stated = self.known(quantity)?;
+            let rule = Rule::new(quantity, self.class, self.drive, &values);
+            let by_rule = rule.median;
+            let is_by_factor = !(by_rule / FACTOR..=by_rule * FACTOR).contains(&stated);
+            let is_far = stated < rule.at(-FAR) || stated > rule.at(FAR);
+            (is_by_factor && is_far).then_some(Unusual { quantity, stated, by_rule })
+        };
+        COMPARED.into_iter().filter_map(judge).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::LibraryVehicle;
+    use crate::vehicle::sheet::VehicleClass;
+
+    #[test]
+    fn a_figure_in_another_unit_is_found() {
+        let car = || {
+            DataSheet::new("car", VehicleClass::Any)
+                .with(Q::Mass, 1500.0)
+                .with(Q::Length, 4.7)
+                .with(Q::Width, 1.8)
+        };
+        assert_eq!(car().unusual(), []);
+        // Kilograms as pounds, the length as wheelbase, half the track, the height of the roof, digits that are
+        // lost, and a diameter.
+        for (quantity, value) in [
+            (Q::Mass, 680.4),
+            (Q::Wheelbase, 4.7),
+            (Q::Track, 0.75),
+            (Q::CgHeight, 1.4),
+            (Q::YawInertia, 250.0),
+            (Q::SprungMass, 150.0),
+            (Q::WheelRadius, 0.62),
+        ] {
+            let found = car().with(quantity, value).unusual();
+            let quantities: Vec<Q> = found.iter().map(|unusual| unusual.quantity).collect();
+            assert_eq!(quantities, [quantity], "{found:?}");
+            assert_eq!(found[0].stated, value);
+        }
+        // A loaded van, a truck and a model of a car.
+        let van = DataSheet::new("van", VehicleClass::Van)
+            .with(Q::Mass, 3500.0)
+            .with(Q::Length, 5.93)
+            .with(Q::Width, 1.99);
+        let truck = car().with(Q::Mass, 18e3).with(Q::Length, 11.0).with(Q::Width, 2.5);
+        let model = car().with(Q::Mass, 4.0).with(Q::Length, 0.6).with(Q::Width, 0.3);
+        for sheet in [van, truck, model] {
+            assert_eq!(sheet.unusual(), [], "{}", sheet.name);
+        }
+    }
+
+    #[test]
+    fn no_vehicle_of_the_library_is_unusual() {
+        for vehicle in LibraryVehicle::ALL {
+            let parameters = vehicle.parameters();
+            let sheet = parameters.sheet.as_ref().unwrap();
+            assert_eq!(sheet.unusual(), [], "{}", vehicle.id());
+        }
+    }
+}
