@@ -20,7 +20,7 @@ use impactlab_core::error_chain;
 use impactlab_core::site::{
     CloudFormat, CloudSummary, Site, SiteError, read_drawing, read_picture, survey_cloud,
 };
-use impactlab_core::units::{NumberFormat, UnitSystem};
+use impactlab_core::units::{NumberFormat, Phrase, UnitSystem};
 use impactlab_core::vehicle::VehicleParameters;
 use impactlab_networks::nn::kind_of_file;
 use impactlab_networks::response::evaluate::Comparison;
@@ -228,16 +228,19 @@ impl InputFile {
             Self::Cloud(summary) => {
                 Ok(summary.contents().into_iter().chain(summary.unit_note.clone()).collect())
             }
-            Self::Vehicle(vehicle) => {
-                let phrases = unusual_phrases(vehicle).into_iter();
-                Ok(phrases.map(|phrase| phrase.say(&NumberFormat::default())).collect())
-            }
+            Self::Vehicle(vehicle) => Ok(said(&unusual_phrases(vehicle))),
+            Self::Evidence(evidence) => Ok(said(&evidence.odd_sigmas())),
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),
             Self::OfSweep => Ok(vec!["checked by its own command".to_owned()]),
             _ => Ok(Vec::new()),
         }
     }
+}
+
+/// Phrases in the words of the program.
+fn said(phrases: &[Phrase]) -> Vec<String> {
+    phrases.iter().map(|phrase| phrase.say(&NumberFormat::default())).collect()
 }
 
 /// How many cases there are of each kind of collision, with every case read.
