@@ -140,6 +140,9 @@ fn a_log_of_100_samples_makes_the_next_impact_better_known() {
         let facts = &report["logs"][0];
         assert_eq!(facts["force"], "recorded", "{hz} Hz");
         assert_eq!(facts["n_samples"], n_states, "{hz} Hz");
+        // It is a scaled vehicle: for a car the impulse would be in another unit.
+        let is_told = report["caveats"].to_string().contains("log_force.csv: impulse 90.");
+        assert!(is_told, "{hz} Hz: {report}");
         let position_m = facts["noise"]["position_m"].as_f64().unwrap();
         assert!((0.015..0.026).contains(&position_m), "{hz} Hz: {position_m}");
         assert_eq!(report["train"], serde_json::json!(["log"]));

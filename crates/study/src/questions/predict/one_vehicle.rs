@@ -83,6 +83,7 @@ pub(super) fn given_force(
     let loaded = library.series(file).map_err(|error| error.of_option("--force-map"))?;
     let name = path.display().to_string();
     caveats.extend(restrictions::doubtful_data_caveats(&name, &loaded));
+    caveats.extend(restrictions::doubtful_note_caveats(&name, &loaded));
     let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
         .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
     // A recorded yaw moment acts about the CG: it does not say where another force acts.

@@ -11,7 +11,7 @@ use crate::caveats::restrictions::{doubtful_data_caveats, doubtful_note_caveats}
 use crate::questions::simulate::drive::steer_history;
 use crate::questions::simulate::motion_source::acting_force;
 use impactlab_core::data::{
-    Channel, ColumnMap, ForceHistory, list_folder, read_any_series, read_motion_log,
+    Channel, ColumnMap, ForceHistory, Loaded, list_folder, read_any_series, read_motion_log,
 };
 use impactlab_core::ranges::{INSTANT, LOG_DURATION, STEERING_RATIO};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
@@ -122,7 +122,7 @@ impl MotionLogs {
         for (i, path) in paths.iter().enumerate() {
             let log = self.log(path, caveats)?;
             let load = match self.forces.get(i) {
-                Some(force) => Some(self.load(force, &settings.vehicle)?),
+                Some(force) => Some(self.load(force, &settings.vehicle, caveats)?),
                 None => None,
             };
             let found = LoggedImpact::from_log(&log, load, &settings)?;
@@ -147,16 +147,14 @@ impl MotionLogs {
     /// A log with its steering as an angle of the road wheels. What is in doubt about it is said.
     fn log(&self, path: &Path, caveats: &mut Caveats) -> Result<MotionLog, StudyError> {
         let loaded = read_motion_log(path, self.map.as_ref())?;
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        caveats.extend(doubtful_data_caveats(&name, &loaded));
-        caveats.extend(doubtful_note_caveats(&name, &loaded));
+        caveats.extend(doubts(path, &loaded));
         let mut series = loaded.series;
         let in_file = |source| StudyError::Series { path: path.to_owned(), source };
         if STEERING.iter().any(|channel| series.get(*channel).is_some()) {
             let steer = steer_history(path, &series, self.steering_ratio)?;
             series.insert(Channel::Steer, steer.steer_rad).map_err(in_file)?;
         } else {
-            caveats.push(straight_ahead(&name));
+            caveats.push(straight_ahead(&name_of(path)));
         }
         Ok(MotionLog { path: path.to_owned(), series })
     }
@@ -182,10 +180,17 @@ impl MotionLogs {
     }
 
     /// A force with the point where it acts. A force that does not say where it acts is refused: an
-    /// answer can say what it assumes, but a network that has learned from it cannot.
-    fn load(&self, path: &Path, vehicle: &VehicleParameters) -> Result<ContactLoad, StudyError> {
+    /// answer can say what it assumes, but a network that has learned from it cannot. What is in doubt about the
+    /// file is said.
+    fn load(
+        &self,
+        path: &Path,
+        vehicle: &VehicleParameters,
+        caveats: &mut Caveats,
+    ) -> Result<ContactLoad, StudyError> {
         let loaded = read_any_series(path, self.force_map.as_ref())
             .map_err(|error| error.of_option("--force-map"))?;
+        caveats.extend(doubts(path, &loaded));
         let in_file = |source| StudyError::Series { path: path.to_owned(), source };
         let force =
             ForceHistory::from_series(&loaded.series, loaded.force_sampling()).map_err(in_file)?;
@@ -196,6 +201,17 @@ impl MotionLogs {
             acting_force(force, self.contact, vehicle, 0.0, &mut Caveats::default());
         Ok(ContactLoad { recorded_moment: force.mz_n_m.is_some(), force, contact })
     }
+}
+
+/// What is in doubt about a file.
+fn doubts(path: &Path, loaded: &Loaded) -> impl Iterator<Item = Caveat> {
+    let name = name_of(path);
+    let of_data = doubtful_data_caveats(&name, loaded);
+    of_data.into_iter().chain(doubtful_note_caveats(&name, loaded))
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
 /// A log without steering is that of a vehicle whose front wheels stand straight ahead.
@@ -221,8 +237,7 @@ fn estimated_force(path: &Path, found: &LoggedImpact) -> Caveat {
         "{0} has no force, and this explains its motion; where nothing was struck: --no-impact",
         "{0} hat keine Kraft, und diese erklärt die Bewegung; ohne Anstoß: --no-impact",
     );
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    Caveat::assumed(CaveatSubject::Pulse, value, reason.with(PhraseValue::Name(name)))
+    Caveat::assumed(CaveatSubject::Pulse, value, reason.with(PhraseValue::Name(name_of(path))))
 }
 
 /// That a motion is not the one that its steering and its force give. A network would learn the difference as
@@ -237,7 +252,6 @@ fn unexplained_motion(path: &Path, case: &ResponseCase) -> Option<Caveat> {
     if distance_m <= (share * way_m).max(least_m) {
         return None;
     }
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let text = Phrase::new(
         "the path in {0} is on average {1} from the one that its steering and its force give this vehicle over \
          {2}; check unit, side and ratio of the steering, the vehicle, and whether it was struck or braked",
@@ -245,7 +259,7 @@ fn unexplained_motion(path: &Path, case: &ResponseCase) -> Option<Caveat> {
          prüfen sind Einheit, Seite und Übersetzung der Lenkung, das Fahrzeug und ob es angestoßen oder gebremst \
          wurde",
     )
-    .with(PhraseValue::Name(name))
+    .with(PhraseValue::Name(name_of(path)))
     .with(PhraseValue::three_digits(Quantity::Length, distance_m))
     .with(PhraseValue::three_digits(Quantity::Length, way_m));
     Some(Caveat::new(CaveatKind::DoubtfulData, text))
