@@ -29,8 +29,8 @@ const OTHER_FORMAT: &[u8] = b"AutoCAD DXB";
 const MAX_DEPTH: usize = 8;
 /// Largest distance between an arc and its chords, m.
 const CHORD_ERROR_M: f64 = 0.005;
-/// Longer side of the drawing of a place of a collision, m.
-const USUAL_SIDE_M: std::ops::RangeInclusive<f64> = 3.0..=10_000.0;
+/// Longer side of a drawing or a picture of a place of a collision, m.
+pub(super) const USUAL_SIDE_M: std::ops::RangeInclusive<f64> = 3.0..=10_000.0;
 /// Least vertical part of the normal of what lies in the plane of the ground.
 const LEAST_NORMAL: f64 = 0.999;
 

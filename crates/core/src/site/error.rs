@@ -25,6 +25,14 @@ pub enum SiteError {
         /// What is expected.
         expected: &'static str,
     },
+    /// The coordinate system of a world file is none that is read, or contradicts the site file.
+    #[error("{}: {message}", path.display())]
+    Projection {
+        /// The file with the coordinate system.
+        path: PathBuf,
+        /// What is wrong, and what to do.
+        message: String,
+    },
     /// Nothing says where the pixels of an orthophoto lie.
     #[error(
         "{}: has no world file beside it, expected {name}, or points_px with points_m or distance_m in \

@@ -15,7 +15,8 @@
 //! [orthophoto]
 //! file = "crossing.png"             # PNG, JPEG or TIFF, beside the site file or in a folder below it
 //! world_file = "crossing.pgw"       # found beside the picture if not given
-//! unit = "m"                        # of the world file: m, ft, us_survey_ft; m if not given
+//! unit = "m"                        # of the world file: m, ft, us_survey_ft; if not given, that of
+//!                                   # crossing.prj, else m
 //! # or two of its points, [column, row] from the left top corner, with their places
 //! # points_px = [[120.5, 340], [1820, 352]]
 //! # points_m = [[0, 0], [42.5, 0]]
@@ -65,6 +66,7 @@ use crate::ranges::{
 };
 use crate::site::parts::file_name;
 use crate::site::picture::{is_picture_file, picture_size_px};
+use crate::site::projection_file::{projection_beside, unit_of_world_file};
 use crate::site::{
     DrawingFile, EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, PixelMap, Site, SiteError,
     SiteOrigin, SurveyFormat, SurveyOptions, SurveyedLine, SurveyedPoint, WorldFile,
@@ -75,11 +77,13 @@ use crate::vehicle::{FrictionZone, RoadSlope};
 
 impl Site {
     /// The files that a site file, or an orthophoto as a site of its own, consists of beside itself:
-    /// orthophoto, world file, drawing. They need not exist, and nothing is said of a file that is wrong;
+    /// orthophoto, world file, coordinate system, drawing. They need not exist, and nothing is said of a file that is wrong;
     /// [`Site::load`] does that.
     pub fn files_named_by(path: &Path) -> Vec<PathBuf> {
         if is_picture_file(path) {
-            return world_file_beside(path).into_iter().collect();
+            let world = world_file_beside(path).ok();
+            let projection = world.as_deref().and_then(|world| projection_beside(path, world));
+            return world.into_iter().chain(projection).collect();
         }
         let Ok(text) = TomlFile::read(path) else { return Vec::new() };
         let file = TomlFile { path, text: &text };
@@ -98,7 +102,10 @@ impl Site {
         let beside = picture.as_deref().filter(|_| world.is_none() && !is_placed);
         let beside = beside.and_then(|picture| world_file_beside(picture).ok());
         let drawing = named("dxf", "file");
-        picture.into_iter().chain(world).chain(beside).chain(drawing).collect()
+        let of_picture = picture.as_deref().zip(world.as_deref().or(beside.as_deref()));
+        let projection = of_picture.and_then(|(picture, world)| projection_beside(picture, world));
+        let of_world = world.into_iter().chain(beside).chain(projection);
+        picture.into_iter().chain(of_world).chain(drawing).collect()
     }
 
     /// Reads a site file, or a picture or surveyed lines as a site of their own ([`Site::from_picture`],
@@ -251,7 +258,10 @@ fn read_orthophoto(
         let expected = "no unit, which is that of a world file: this picture is placed in metres";
         return Err(table.refuse_last(expected).into());
     }
-    let world_unit = unit.unwrap_or_default();
+    let world_unit = match &world_file {
+        Some(world) => unit_of_world_file(&file, world, unit)?,
+        None => LengthUnit::default(),
+    };
     let map = match (map, &world_file) {
         (Some(map), _) => map,
         (None, Some(file)) => {

@@ -126,6 +126,44 @@ fn the_unit_of_a_world_file_and_feet_of_the_survey_are_read_and_come_back() {
     assert!(error.contains("orthophoto.unit is \"ft\", expected no unit"), "{error}");
 }
 
+/// A picture in feet, or in metres of web maps, was 3.28 or 1.5 times too large without a word.
+#[test]
+fn the_coordinate_system_beside_a_picture_counts_and_goes_with_it() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("road.pgw"), "0.5\n0\n0\n-0.5\n17000000.25\n1000099.75\n").unwrap();
+    let system = |projection: &str| {
+        format!("PROJCS[\"a\",PROJECTION[\"{projection}\"],UNIT[\"Foot_US\",0.3048006096012192]]")
+    };
+    std::fs::write(at("road.prj"), system("Lambert_Conformal_Conic")).unwrap();
+    let foot_m = 1200.0 / 3937.0;
+    let text = "[orthophoto]\nfile = \"road.png\"\n";
+    for site in [Site::load(&at("road.png")).unwrap(), read(folder.path(), text).unwrap()] {
+        let map = site.orthophoto.as_ref().unwrap().map;
+        assert!((map.per_column_m[0] - 0.5 * foot_m).abs() < 1e-12, "{map:?}");
+        assert!(Site::files_named_by(&site.path).contains(&at("road.prj")));
+        let again = read(folder.path(), &site.to_toml(folder.path()).unwrap()).unwrap();
+        assert_eq!(again.orthophoto, site.orthophoto);
+    }
+    let error = read(folder.path(), &format!("{text}unit = \"m\"\n")).unwrap_err();
+    assert!(error.contains("road.prj: its coordinates are in us_survey_ft"), "{error}");
+    std::fs::write(at("road.prj"), system("Mercator_Auxiliary_Sphere")).unwrap();
+    assert!(Site::load(&at("road.png")).is_err());
+}
+
+#[test]
+fn a_picture_as_large_as_no_place_is_said() {
+    let folder = folder();
+    let contents = |pixel: &str| {
+        let world = format!("{pixel}\n0\n0\n-{pixel}\n500000\n5400000\n");
+        std::fs::write(folder.path().join("road.pgw"), world).unwrap();
+        let site = Site::load(&folder.path().join("road.png")).unwrap();
+        site.contents(None, UnitSystem::Si).join("; ")
+    };
+    assert!(contents("50").ends_with("world file in m: is that its unit?"), "{}", contents("50"));
+    assert!(contents("0.05").ends_with("world file in m"), "{}", contents("0.05"));
+}
+
 #[test]
 fn a_wrong_file_is_refused_with_line_and_key() {
     let folder = folder();

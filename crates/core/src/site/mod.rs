@@ -15,6 +15,7 @@ mod error;
 
 mod origin;
 mod pixel_map;
+mod projection_file;
 mod world_file;
 
 mod parts;

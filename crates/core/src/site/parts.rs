@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::data::GeographicPlace;
+use crate::site::drawing::USUAL_SIDE_M;
+use crate::site::projection_file::unit_of_world_file;
 use crate::site::{
     DrawingSummary, GeographicFrame, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px,
     world_file_beside,
@@ -190,17 +192,21 @@ impl LengthUnit {
 }
 
 impl Site {
-    /// A site of a picture alone. Its world file says where it lies; without one it lies about the
-    /// origin, and its scale is not known.
+    /// A site of a picture alone. Its world file says where it lies, in the unit of the coordinate system beside it,
+    /// else in metres; without one it lies about the origin, and its scale is not known.
     ///
     /// # Errors
     /// [`SiteError`] if the picture or the world file cannot be read.
     pub fn from_picture(path: &Path) -> Result<Self, SiteError> {
         let size_px = picture_size_px(path)?;
         let world_file = world_file_beside(path).ok();
+        let world_unit = match &world_file {
+            Some(file) => unit_of_world_file(path, file, None)?,
+            None => LengthUnit::Metre,
+        };
         let map = match &world_file {
             Some(file) => {
-                let world = WorldFile::load(file, LengthUnit::Metre)?;
+                let world = WorldFile::load(file, world_unit)?;
                 PixelMap::from_world_file(&world, &SiteOrigin::default())
             }
             None => {
@@ -214,7 +220,6 @@ impl Site {
         };
         let is_placed = world_file.is_some();
         let file = path.to_owned();
-        let world_unit = LengthUnit::Metre;
         let orthophoto = Orthophoto { file, world_file, world_unit, size_px, map, is_placed };
         Ok(Self { orthophoto: Some(orthophoto), ..Self::empty(path) })
     }
@@ -264,6 +269,10 @@ impl Site {
         let orthophoto = self.orthophoto.as_ref().map(|orthophoto| {
             let [width, height] = orthophoto.size_px;
             let pixel = unit.from_si(orthophoto.map.pixel_size_m()[0]);
+            let [low, high] = orthophoto.extent_m();
+            let side_m = (high[0] - low[0]).max(high[1] - low[1]);
+            let is_odd = orthophoto.is_placed && !USUAL_SIDE_M.contains(&side_m);
+            let doubt = if is_odd { ": is that its unit?" } else { "" };
             let place = match (orthophoto.is_placed, &orthophoto.world_file) {
                 (false, _) => ", place and scale not known".to_owned(),
                 (true, None) => extent_text(orthophoto.extent_m(), units),
@@ -275,7 +284,8 @@ impl Site {
                     )
                 }
             };
-            format!("orthophoto of {width} x {height} pixels of {pixel:.4} {}{place}", unit.symbol)
+            let size = format!("{width} x {height} pixels of {pixel:.4} {}", unit.symbol);
+            format!("orthophoto of {size}{place}{doubt}")
         });
         let drawing = self.drawing.as_ref().map(|file| {
             let contents = drawing.map(|summary| summary.contents(units)).unwrap_or_default();

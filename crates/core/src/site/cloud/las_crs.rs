@@ -46,7 +46,7 @@ const FACTOR_REACH: f64 = 1e-7;
 
 /// A unit that a file states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum StatedUnit {
+pub(in crate::site) enum StatedUnit {
     /// One of length.
     Length(LengthUnit),
     /// A unit of length that is not known here.
@@ -59,7 +59,7 @@ pub(super) enum StatedUnit {
 
 /// What a file states; `None` where it states nothing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Stated {
+pub(in crate::site) struct Stated {
     /// Of easting and northing.
     pub plane: Option<StatedUnit>,
     /// Of the heights.
@@ -115,7 +115,7 @@ fn of_keys(value: impl Fn(u16) -> Option<u16>) -> Stated {
 
 /// The last unit of the part in the plane, where that of its axes stands behind those of what it is made of, and
 /// the last one of the part of the heights.
-pub(super) fn of_wkt(text: &str) -> Stated {
+pub(in crate::site) fn of_wkt(text: &str) -> Stated {
     let lower = text.to_lowercase();
     let has = |text: &str, words: &[&str]| words.iter().any(|word| text.contains(word));
     let words = ["vert_cs", "vertcs", "vertcrs", "verticalcrs"];

@@ -14,7 +14,7 @@ use crate::site::cloud::source::damaged;
 use crate::site::{CloudFormat, LengthUnit, SiteError};
 
 /// Why coordinates in the projection of Mercator are refused.
-const OF_MERCATOR: &str = "its coordinates are those of a map in the projection of Mercator, as of web maps \
+pub(in crate::site) const OF_MERCATOR: &str = "its coordinates are those of a map in the projection of Mercator, as of web maps \
     (EPSG:3857), whose metres are shorter than those on the ground by the cosine of the latitude, to two thirds at \
     48 degrees; bring it into a grid of the country or into UTM first";
 
