@@ -160,8 +160,10 @@ pub(super) fn number_ui(
         written.borrow_mut().clone_from(&text);
         text
     };
+    let left_id = id.with("left");
+    let left = ui.data(|data| data.get_temp::<String>(left_id));
     let parse = |text: &str| {
-        if text == *written.borrow() {
+        if text == *written.borrow() || left.as_deref() == Some(text) {
             return None;
         }
         let found = number.typed(text);
@@ -195,6 +197,12 @@ pub(super) fn number_ui(
     let is_left = refused.is_some()
         && response.lost_focus()
         && ui.input(|input| input.key_pressed(Key::Escape));
+    // A field that is left with Escape gives what stood in it once more, a frame later.
+    if let (true, Some(refused)) = (is_left, &refused) {
+        ui.data_mut(|data| data.insert_temp(left_id, refused.text.clone()));
+    } else if response.has_focus() {
+        ui.data_mut(|data| data.remove::<String>(left_id));
+    }
     match empty {
         Some((text, start)) if number.value.is_none() && response.has_focus() => {
             let held = Held { text: text.to_owned(), start };
