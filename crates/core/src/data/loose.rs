@@ -2,7 +2,6 @@
 //! that writes delimited text. The columns are found by their headers or by a mapping of the user
 //! and converted to SI units.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::data::si_values::{instants_s, si_values};
@@ -10,7 +9,7 @@ use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnUse, Columns, DataError, Dialect, ModelStart, Note,
     ReadSettings, Sampling, SeriesError, Table, Thousands, TimeSeries, VelocityAxes, antenna,
-    clock, computed, corrections, course, degrees, impulse, path_speed, steering,
+    clock, computed, corrections, degrees, doubts, impulse, steering,
 };
 use crate::ranges::TIME_STEP;
 
@@ -329,7 +328,7 @@ fn load_columns(
     notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
     notes.extend(computed::note(table, &by_channel));
     notes.extend(found);
-    notes.extend(doubts(table, &by_channel, &series, map));
+    notes.extend(doubts::of_numbers(table, &by_channel, &series, map));
     // What is checked above is what the receiver has measured.
     notes.extend(move_to_cg(&mut series, &settings, table)?);
     let model_start = table.model_start().filter(|_| kind == FileKind::Force && is_as_written(map));
@@ -344,22 +343,6 @@ fn load_columns(
         encoding: table.encoding(),
         model_start,
     })
-}
-
-/// What numbers say of columns beside what contradicts itself.
-fn doubts(
-    table: &Table,
-    by_channel: &BTreeMap<Channel, ColumnUse>,
-    series: &TimeSeries,
-    map: Option<&ColumnMap>,
-) -> Vec<Note> {
-    let all = [
-        course::offset_note(series),
-        path_speed::note(table, by_channel, series),
-        steering::note(by_channel, map, series),
-        steering::opposed(by_channel, series),
-    ];
-    all.into_iter().flatten().collect()
 }
 
 /// Whether a map takes the force of a finite-element run as it was written: neither that on the other car nor

@@ -30,6 +30,7 @@ mod course;
 mod dataset;
 mod degrees;
 mod dialect;
+mod doubts;
 mod error;
 mod file;
 mod force_history;
