@@ -195,7 +195,7 @@ fn files_of_steering_wheel_and_torques_steer_and_brake() {
         ("steering_wheel_deg", 48.0, &[][..], "say the steering ratio (--steering-ratio"),
         ("steer_deg", 3.0, &["--steering-ratio", "16"], "holds angles of the road wheels"),
         ("steering_wheel_deg", 720.0, &["--steering-ratio", "2"], "steer angle is 6.283185 rad"),
-        ("steer_deg", 270.0, &[], "an angle of the steering wheel as such"),
+        ("steer_deg", 270.0, &[], "--steer-map \"steering_wheel=2:deg\""),
     ] {
         let output = steer(header, full, args).unwrap();
         let message = String::from_utf8(output.stderr).unwrap();

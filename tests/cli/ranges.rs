@@ -183,9 +183,9 @@ fn what_goes_wrong_together_is_an_error() {
     let steer = folder.path().join("steer.csv");
     fs::write(&steer, "time_s,steer_rad\n0,0\n1,5\n").unwrap();
     let (code, error) = run(&["simulate", "--speed", "20", "--steer", text(&steer)]);
-    assert!(code == Some(1) && error.contains("steer.csv:3:2: "), "{error}");
-    assert!(error.contains("is 5 rad, expected -0.9 to 0.9 rad"), "{error}");
-    assert!(error.contains("an angle of the steering wheel as such"), "{error}");
+    assert!(code == Some(1) && error.contains("steer.csv:1: "), "{error}");
+    assert!(error.contains("line 3 has 5 rad, expected -0.9 to 0.9 rad"), "{error}");
+    assert!(error.contains("--steer-map \"steering_wheel=2:rad\""), "{error}");
 }
 
 #[test]

@@ -75,7 +75,7 @@ impl State {
         if analysis.is_waiting() {
             return;
         }
-        if !analysis.ok().is_some_and(|simulated| simulated.analysis.struck.is_some()) {
+        if analysis.ok().is_none_or(|simulated| simulated.analysis.struck.is_none()) {
             self.session.response.forecast.forget();
             return;
         }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ops::RangeInclusive;
 
-use egui::{Event, Key, Response, Ui};
+use egui::{Event, Id, Key, Response, Ui};
 
 use crate::app::widgets::refusal::{refusal_color, refusal_ui};
 use impactlab_core::units::{Quantity, Unit, significant};
@@ -129,17 +129,7 @@ pub(super) fn number_ui(
     control: impl FnOnce(&mut Ui, Editing<'_>) -> Response,
 ) -> (Response, Edit) {
     let id = ui.next_auto_id().with("refused");
-    let refused = ui.data(|data| data.get_temp::<Refused>(id));
-    let mut refused = refused.filter(|refused| refused.stays == number.value);
-    let frame = ui.ctx().cumulative_frame_nr();
-    if let Some(of) = &mut refused
-        && of.new_since.is_some_and(|since| since != frame)
-        && goes_on(ui)
-    {
-        of.new_since = None;
-        ui.data_mut(|data| data.insert_temp(id, of.clone()));
-    }
-    let refused = refused;
+    let refused = refused_before(ui, id, number);
     // Another field may change what this one says while its text is selected: keys would leave the end of it.
     let held_id = id.with("held");
     let held = ui.data(|data| data.get_temp::<Held>(held_id));
@@ -171,14 +161,7 @@ pub(super) fn number_ui(
         typed.replace(found);
         value
     };
-    let symbol = number.unit.symbol;
-    let suffix = match (number.value, empty) {
-        _ if refused.is_some() || symbol.is_empty() => String::new(),
-        (Some(_), _) => format!(" {symbol}"),
-        // In which unit a number is taken that is typed without one.
-        (None, Some((text, _))) if !says_unit(text, symbol) => format!(" [{symbol}]"),
-        (None, _) => String::new(),
-    };
+    let suffix = suffix(number, empty, refused.is_some());
     let mut shown = start;
     let response = ui.vertical(|ui| {
         let response = ui.scope(|ui| {
@@ -210,34 +193,68 @@ pub(super) fn number_ui(
         }
         _ => ui.data_mut(|data| data.remove::<Held>(held_id)),
     }
-    let forget = |ui: &Ui| ui.data_mut(|data| data.remove::<Refused>(id));
     let edit = match typed.into_inner() {
+        Typed::Nothing if is_left => {
+            forget(ui, id);
+            Edit::None
+        }
+        Typed::Nothing if response.changed() => {
+            forget(ui, id);
+            let value = if number.is_whole { shown.round() } else { shown };
+            Edit::Value(value.clamp(number.limits[0], number.limits[1]))
+        }
+        typed => edit_of(ui, id, number, typed),
+    };
+    (response, edit)
+}
+
+/// What was typed before and is not possible, unless the number has changed since.
+fn refused_before(ui: &Ui, id: Id, number: &Number<'_>) -> Option<Refused> {
+    let refused = ui.data(|data| data.get_temp::<Refused>(id));
+    let mut refused = refused.filter(|refused| refused.stays == number.value)?;
+    let is_earlier = |since| since != ui.ctx().cumulative_frame_nr();
+    if refused.new_since.is_some_and(is_earlier) && goes_on(ui) {
+        refused.new_since = None;
+        ui.data_mut(|data| data.insert_temp(id, refused.clone()));
+    }
+    Some(refused)
+}
+
+fn forget(ui: &Ui, id: Id) {
+    ui.data_mut(|data| data.remove::<Refused>(id));
+}
+
+/// What stands behind the number: its unit, unless the text has one.
+fn suffix(number: &Number<'_>, empty: Option<(&str, f64)>, is_refused: bool) -> String {
+    let symbol = number.unit.symbol;
+    match (number.value, empty) {
+        _ if is_refused || symbol.is_empty() => String::new(),
+        (Some(_), _) => format!(" {symbol}"),
+        // In which unit a number is taken that is typed without one.
+        (None, Some((text, _))) if !says_unit(text, symbol) => format!(" [{symbol}]"),
+        (None, _) => String::new(),
+    }
+}
+
+/// What follows from what was typed in this frame. What is not possible is kept.
+fn edit_of(ui: &Ui, id: Id, number: &Number<'_>, typed: Typed) -> Edit {
+    match typed {
+        Typed::Nothing => Edit::None,
         Typed::Refused { text, why } => {
-            let (stays, new_since) = (number.value, Some(frame));
+            let (stays, new_since) = (number.value, Some(ui.ctx().cumulative_frame_nr()));
             ui.data_mut(|data| data.insert_temp(id, Refused { text, why, stays, new_since }));
             ui.ctx().request_repaint();
             Edit::None
         }
         Typed::Cleared => {
-            forget(ui);
+            forget(ui, id);
             if number.value.is_some() { Edit::Cleared } else { Edit::None }
         }
         Typed::Value(value) => {
-            forget(ui);
+            forget(ui, id);
             if number.value == Some(value) { Edit::None } else { Edit::Value(value) }
         }
-        Typed::Nothing if is_left => {
-            forget(ui);
-            Edit::None
-        }
-        Typed::Nothing if response.changed() => {
-            forget(ui);
-            let value = if number.is_whole { shown.round() } else { shown };
-            Edit::Value(value.clamp(number.limits[0], number.limits[1]))
-        }
-        Typed::Nothing => Edit::None,
-    };
-    (response, edit)
+    }
 }
 
 /// Whether a text has the symbol of a unit as a word of its own.

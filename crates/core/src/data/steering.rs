@@ -30,7 +30,7 @@ pub(super) fn asked(
     error: DataError,
 ) -> DataError {
     let is_said = map.is_some_and(|map| map.get(Channel::Steer).is_some());
-    let (DataError::ImplausibleValue { .. }, Channel::Steer, [_], false) =
+    let (DataError::ImplausibleValue { line, value, range, .. }, Channel::Steer, [_], false) =
         (&error, column.channel, &column.terms[..], is_said)
     else {
         return error;
@@ -47,10 +47,12 @@ pub(super) fn asked(
     let unit = if column.unit_is_stated { Some(column.unit) } else { in_degrees };
     let Some(unit) = unit.filter(fits) else { return error };
     let what = format!(
-        "column {} {} turns further than road wheels do; an angle of the steering wheel is read as such, with the \
+        "column {} {} turns further than road wheels do: line {line} has {}, expected {}; an angle of the steering wheel is read as such, with the \
          steering ratio (--steering-ratio)",
         column.number,
-        quoted(&column.name)
+        quoted(&column.name),
+        range.shown(*value),
+        range.explained()
     );
     let mut map = map.cloned().unwrap_or_default();
     map.settings.time_shift_s = shift_s.or(map.settings.time_shift_s);

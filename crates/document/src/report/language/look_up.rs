@@ -226,11 +226,11 @@ mod tests {
     /// Adds every name in what a schema describes.
     fn add_names(schema: &Value, root: &Value, within: &[&str], names: &mut BTreeSet<String>) {
         let of = |key: &str| schema.get(key).cloned().unwrap_or_default();
-        if let Some(path) = of("$ref").as_str().and_then(|path| path.strip_prefix('#')) {
-            if !within.contains(&path) {
-                let within = [within, &[path]].concat();
-                add_names(root.pointer(path).unwrap(), root, &within, names);
-            }
+        if let Some(path) = of("$ref").as_str().and_then(|path| path.strip_prefix('#'))
+            && !within.contains(&path)
+        {
+            let within = [within, &[path]].concat();
+            add_names(root.pointer(path).unwrap(), root, &within, names);
         }
         for (name, field) in of("properties").as_object().into_iter().flatten() {
             if !ELSEWHERE.contains(&name.as_str()) {

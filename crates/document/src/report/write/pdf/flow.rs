@@ -395,7 +395,7 @@ mod tests {
                 let parts: Vec<usize> = flow.pages.iter().map(n_lines).filter(|n| *n > 0).collect();
                 let is_kept = parts.len() == 1 || parts.iter().all(|n| *n >= KEPT_LINES);
                 assert!(is_kept, "{n_above} above, {n_words} words: {parts:?} lines");
-                let first = flow.pages.iter().find(|page| n_lines(*page) > 0).unwrap();
+                let first = flow.pages.iter().find(|page| n_lines(page) > 0).unwrap();
                 assert_eq!(first.items.iter().any(is_point), is_list, "{n_above}, {n_words}");
             }
         }
