@@ -76,7 +76,13 @@ fn sampled_cars_load_without_a_problem_and_those_held_out_are_others() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
     let mut go_on = |_| ControlFlow::Continue(());
     let mut names = BTreeSet::new();
-    for (part, n_cars) in [("trajectories-cars", 59), ("trajectories-cars-held-out", 24)] {
+    let parts = [
+        ("trajectories-cars", 44),
+        ("trajectories-cars-held-out", 15),
+        ("trajectories-cars-wide", 15),
+        ("trajectories-cars-wide-held-out", 9),
+    ];
+    for (part, n_cars) in parts {
         let mut n_found = 0;
         for entry in std::fs::read_dir(root.join(part)).unwrap() {
             let folder = entry.unwrap().path();
