@@ -311,8 +311,7 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
         ControlFlow::Continue(())
     };
     let model = train_fleet(&start, &set, &settings, &mut go_on).expect("a model");
-    // They run side by side, the model itself first.
-    assert_eq!(trainings.first(), Some(&[0, 5]));
+    // They run side by side.
     trainings.sort_unstable();
     trainings.dedup();
     assert_eq!(trainings, [[0, 5], [1, 5], [2, 5], [3, 5], [4, 5]]);

@@ -131,7 +131,9 @@ fn found_tire_marks_stand_beside_the_computed_ones() {
     let Some(Report::Reconstruct(report)) = answers.variants[0].reports().next() else {
         panic!("a reconstruction");
     };
-    let [table] = tables(document, "Tire marks that were found")[..] else { panic!("one table") };
+    let [table] = tables(document, "Tire marks that were found beside")[..] else {
+        panic!("one table")
+    };
     assert_eq!((report.marks.len(), table.rows.len()), (4, 4));
     let shown =
         |si: Option<f64>| si.map_or_else(|| "no mark".to_owned(), |si| format!("{si:.2} m"));
