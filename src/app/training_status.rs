@@ -10,7 +10,7 @@ use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
 use crate::app::widgets::duration_text;
 use impactlab_core::jobs::TimeLeft;
-use impactlab_networks::learning::{EpochSummary, FitReport, TrainingReport};
+use impactlab_networks::learning::{EpochReport, EpochSummary, FitReport, TrainingReport};
 use impactlab_study::{Library, Question, Request};
 
 /// The training of a model of type `M`, running or finished.
@@ -23,6 +23,8 @@ pub struct TrainingStatus<M: TrainedModel> {
     pub report: Option<M::Report>,
     /// The latest report; `None` before the first fit or epoch.
     pub latest: Option<TrainingReport>,
+    /// The latest epoch of the model itself, beside which trainings for the calibration may run.
+    own_epoch: Option<EpochReport>,
     /// Whether the training has ended.
     pub is_over: bool,
     /// Summaries of the epochs of the model itself so far, without those of the calibration's
@@ -56,6 +58,7 @@ impl<M: TrainedModel> Default for TrainingStatus<M> {
             request: None,
             report: None,
             latest: None,
+            own_epoch: None,
             is_over: false,
             history: Vec::new(),
             n_before: None,
@@ -140,17 +143,22 @@ impl<M: TrainedModel> TrainingStatus<M> {
                     self.n_before = Some(epoch.n_before);
                     self.best_epoch = epoch.best_epoch;
                     self.history.push(epoch.summary.clone());
+                    self.own_epoch = Some(epoch.clone());
                 }
             }
         }
         self.latest = Some(report);
     }
 
-    /// How far the training has got, such as “epoch 3 of 100”; `None` before its first report.
+    /// How far the training of the model has got, such as “epoch 3 of 100”, and once that is over, those
+    /// for its calibration; `None` before the first report.
     pub fn reached(&self) -> Option<String> {
         Some(match self.latest.as_ref()? {
             TrainingReport::Fit(fit) => fit.to_string(),
-            TrainingReport::Epoch(epoch) => {
+            TrainingReport::Epoch(latest) => {
+                let is_under_way =
+                    |own: &&EpochReport| own.epoch_in_training() < own.n_in_training();
+                let epoch = self.own_epoch.as_ref().filter(is_under_way).unwrap_or(latest);
                 let part = epoch.part().map_or(String::new(), |part| format!("{part}, "));
                 let (done, n_epochs) = (epoch.epoch_in_training(), epoch.n_in_training());
                 format!("{part}epoch {done} of {n_epochs}")
@@ -227,7 +235,6 @@ impl<M: TrainedModel> TrainingStatus<M> {
 mod tests {
     use super::*;
     use impactlab_networks::force::ForceModel;
-    use impactlab_networks::learning::EpochReport;
     use impactlab_networks::shipped::ModelSource;
 
     #[test]
@@ -269,6 +276,31 @@ mod tests {
         }));
         status.is_over = true;
         assert_eq!(status.reached().as_deref(), Some("epoch 1 of 100"));
+    }
+
+    /// A model of one epoch was kept with what a training beside it had reached.
+    #[test]
+    fn trainings_beside_that_of_the_model_are_told_once_it_is_over() {
+        let model = ModelSource::Shipped.force_model().unwrap();
+        let mut status = TrainingStatus::<ForceModel>::default();
+        let mut take = |epoch: usize, training_idx: usize| {
+            status.take(TrainingReport::Epoch(EpochReport {
+                summary: EpochSummary { epoch, ..model.history()[0].clone() },
+                n_before: 0,
+                n_epochs: 3,
+                best_epoch: None,
+                training_idx,
+                n_trainings: 5,
+                n_done_elsewhere: 0,
+                n_at_once: 2,
+            }));
+            status.reached().unwrap()
+        };
+        assert_eq!(take(1, 0), "epoch 1 of 3");
+        assert_eq!(take(2, 1), "epoch 1 of 3");
+        take(2, 0);
+        assert_eq!(take(3, 0), "epoch 3 of 3");
+        assert_eq!(take(3, 1), "calibration 1 of 4, epoch 3 of 3");
     }
 
     /// Those of the shipped network stood under the name of a log that was learned from.
