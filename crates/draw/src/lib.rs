@@ -6,6 +6,7 @@ mod caveats;
 mod cell_map;
 mod density;
 mod density_buffers;
+mod elements;
 pub mod film;
 mod gpu;
 mod legend;
