@@ -37,11 +37,12 @@ impl EditHistory {
             (input.time, pointer.any_pressed(), pointer.any_down(), types)
         });
         self.has_typed |= types && context.text_edit_focused();
-        // A drag that pauses is one edit.
-        if is_pressed || !is_down {
+        let ends_edit = is_pressed || self.settling > 0;
+        // A drag that pauses is one edit. What was undone is forgotten with the next edit, which is seen here.
+        if ends_edit || !is_down {
             self.undoer.feed_state(now, project);
         }
-        if is_pressed || self.settling > 0 {
+        if ends_edit {
             self.undoer.add_undo(project);
             self.settling = self.settling.saturating_sub(1);
         }
@@ -137,5 +138,22 @@ mod tests {
         let undone = history.undo(&of(6.0)).map(|project| project.simulate.duration_s);
         assert_eq!(undone, Some(1.0));
         assert!(!history.has_undo(&of(1.0)));
+    }
+
+    /// What was undone came back over an edit that was made since.
+    #[test]
+    fn an_edit_while_the_focus_changes_forgets_what_was_undone() {
+        let (mut history, context) = (EditHistory::default(), Context::default());
+        frame(&mut history, &context, 1.0, None);
+        frame(&mut history, &context, 1.0, Some(true));
+        frame(&mut history, &context, 2.0, Some(false));
+        history.undo(&of(2.0));
+        assert!(history.has_redo(&of(1.0)));
+        context.memory_mut(|memory| memory.request_focus(Id::unique("a field")));
+        frame(&mut history, &context, 1.0, Some(true));
+        frame(&mut history, &context, 3.0, None);
+        assert!(!history.has_redo(&of(3.0)));
+        let undone = history.undo(&of(3.0)).map(|project| project.simulate.duration_s);
+        assert_eq!(undone, Some(1.0));
     }
 }

@@ -70,7 +70,7 @@ mod widgets;
 mod workspaces;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use eframe::CreationContext;
 use eframe::wgpu::DeviceType;
@@ -422,8 +422,13 @@ fn graphics_processor(cc: &CreationContext<'_>) -> Option<Arc<DensityGpu>> {
 
 /// Returns the folder of the repository's data sets, which are too large to be part of the program.
 /// It is searched below the current folder, in the folders above the program, and in the source
-/// folder from which the program was built.
+/// folder from which the program was built, once: panes without data ask for it in every frame.
 fn shipped_datasets() -> Option<PathBuf> {
+    static FOLDER: LazyLock<Option<PathBuf>> = LazyLock::new(find_shipped_datasets);
+    FOLDER.clone()
+}
+
+fn find_shipped_datasets() -> Option<PathBuf> {
     let program = std::env::current_exe().unwrap_or_default();
     let roots = [PathBuf::from(".")]
         .into_iter()

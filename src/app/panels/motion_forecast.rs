@@ -160,6 +160,7 @@ fn lanes_ui(
             }
         }
         let lack = match site {
+            None if session.ground.is_loading() => return,
             None => "For lanes: a site.".to_owned(),
             Some(site) if site.lanes.is_empty() => format!("{} has no lanes.", site.name),
             Some(_) => return,

@@ -34,9 +34,7 @@ pub(super) fn settings_ui(
         of_pane.iter().map(|(_, choice)| choice).filter(is_own).cloned().collect();
     Grid::new("replay settings").num_columns(2).show(ui, |ui| {
         let name = ui.label("Event");
-        optional_count(ui, &mut request.event, "the first", &EVENT)
-            .on_hover_text(EVENT.meaning)
-            .labelled_by(name.id);
+        optional_count(ui, &mut request.event, "the first", &EVENT).labelled_by(name.id);
         ui.end_row();
         let name = ui.label("Vehicle");
         let open = format!("left open (else {})", vehicle_name(DEFAULT_VEHICLE.id()));
