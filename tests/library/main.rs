@@ -25,6 +25,7 @@ mod dependencies;
 mod endings;
 mod evidence_guide;
 mod exchange;
+mod fleet;
 mod force_baselines;
 mod force_domain;
 mod force_model;
