@@ -344,7 +344,7 @@ impl App {
         let Self { state, store: Some(store), state_text, is_storable, .. } = self else { return };
         let saved = state_text.update(state);
         let was_storable = std::mem::replace(is_storable, saved.is_ok());
-        state.session.keeps_state = saved.is_ok();
+        state.session.keeps_state = saved.is_ok() && !store.is_failing();
         match saved {
             Ok(text) => {
                 if let Some(failure) = store.keep(text, context) {

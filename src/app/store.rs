@@ -30,6 +30,8 @@ pub struct Store {
     /// Time of the first change that has not been written, in seconds of the window's clock.
     pending_since: Option<f64>,
     job: Option<Job<Result<(), DataError>>>,
+    /// Whether the last write has failed.
+    is_failing: bool,
 }
 
 /// What is known at the start of the program of the state that the last run has stored.
@@ -74,7 +76,8 @@ impl Store {
             let _ = std::fs::create_dir_all(folder);
         }
         let lock = WriterLock::lock_file(&path)?;
-        Ok(Self { path, _lock: lock, written: String::new(), pending_since: None, job: None })
+        let (written, pending_since, job) = (String::new(), None, None);
+        Ok(Self { path, _lock: lock, written, pending_since, job, is_failing: false })
     }
 
     /// Restores the state that is in the file.
@@ -161,6 +164,11 @@ impl Store {
         failure
     }
 
+    /// Whether the state could not be written the last time.
+    pub fn is_failing(&self) -> bool {
+        self.is_failing
+    }
+
     /// Writes the state at the end of the program, on the calling thread.
     pub fn finish(&mut self, text: &str) {
         if let Some(job) = &mut self.job {
@@ -176,6 +184,7 @@ impl Store {
             return None;
         }
         self.job = None;
+        self.is_failing = !matches!(update, Update::Finished(Ok(())));
         match update {
             Update::Finished(Err(error)) => Some(error_chain(&error)),
             _ => None,

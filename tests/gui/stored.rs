@@ -172,6 +172,20 @@ fn a_window_that_keeps_nothing_asks_about_a_case_without_a_file() {
 }
 
 #[test]
+fn a_case_that_could_not_be_stored_is_asked_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let state_file = folder.path().join("stored/state.json");
+    let mut harness = open_and_store(&state_file);
+    fs::remove_dir_all(folder.path().join("stored")).expect("removed");
+    harness.state_mut().state_mut().project.simulate.duration_s = 1.25;
+    // A second of the window's clock until it is written.
+    harness.run_steps(90);
+    step_until(&mut harness, "the failure", |state| !state.session.keeps_state);
+    let told = state(&harness).reasons_to_stay(&Leaving::Quit);
+    assert!(told.iter().any(|why| why.contains("keeps nothing for the next start")), "{told:?}");
+}
+
+#[test]
 fn a_damaged_state_is_kept_under_another_name() {
     let folder = tempfile::tempdir().expect("a folder");
     let state_file = folder.path().join("state.json");
