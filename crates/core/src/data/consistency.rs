@@ -11,7 +11,8 @@
 //! ```
 //!
 //! A path along an axis that does not turn leaves open whether ψ is that of a compass or has an offset; both are then
-//! told.
+//! told. Across its heading a vehicle moves only while it slides, which makes it slower: an angle between both that stays
+//! is no contradiction where it slows down, nor where velocities in body axes say the same.
 //!
 //! A vehicle that spins moves in directions that have nothing to do with its heading; the path is compared
 //! with the heading only where one of these relations holds all along while the course turns, which no spin
@@ -21,7 +22,7 @@ use std::fmt;
 
 use crate::data::course::{DRIVING_M_S, OfCourse, against_path, at_the_start, to_a_side};
 use crate::data::yaw_rate::against_yaw_rate;
-use crate::data::{Channel, TimeSeries};
+use crate::data::{Channel, TimeSeries, VelocityFit, velocity_fit};
 
 /// Deviation of a slope from a known factor.
 pub(super) const FACTOR_REACH: f64 = 0.15;
@@ -85,6 +86,9 @@ pub fn contradictions(series: &TimeSeries) -> Vec<Contradiction> {
         OfCourse::Open => at_the_start(series),
     };
     let by_path = if held.is_some() { None } else { by_path() };
+    // Velocities in body axes that give the path have the heading from it.
+    let is_confirmed = || velocity_fit(series) == Some(VelocityFit::Body);
+    let by_path = by_path.filter(|found| !found.is_of_angle() || !is_confirmed());
     [held, against_yaw_rate(series), by_path].into_iter().flatten().collect()
 }
 
@@ -120,6 +124,11 @@ fn known_factor(slope: f64) -> Option<&'static str> {
 }
 
 impl Contradiction {
+    /// Whether it is that of an angle that stays between the yaw angle and the direction of motion.
+    fn is_of_angle(self) -> bool {
+        matches!(self, Self::Compass | Self::Offset { .. } | Self::CompassOrOffset { .. })
+    }
+
     /// What can be done where no change of the map is known to help.
     pub(super) fn advice(self) -> &'static str {
         match self {
@@ -333,6 +342,54 @@ mod tests {
         assert!(matches!(offset[..], [Contradiction::Offset { .. }]), "{offset:?}");
         assert_eq!(drive(0.2, FRAC_PI_2 - 0.2), [Contradiction::Compass]);
         assert_eq!(drive(0.6, 0.6), []);
+    }
+
+    /// A car that is struck from the side and one that has turned by a quarter slide broadside until they stand.
+    #[test]
+    fn a_slide_across_the_heading_contradicts_nothing() {
+        let slide = |duration_s: f64, course_rad: f64, yaw_rad: f64| {
+            let time_s: Vec<f64> = (0..200).map(|i| f64::from(i) * duration_s / 199.0).collect();
+            let mut series = TimeSeries::new(time_s.clone()).unwrap();
+            let way_m = |t: &f64| 10.0 * t.min(1.4) - 3.5 * t.min(1.4).powi(2);
+            let along = |share: f64| time_s.iter().map(|t| share * way_m(t)).collect();
+            series.insert(Channel::X, along(course_rad.cos())).unwrap();
+            series.insert(Channel::Y, along(course_rad.sin())).unwrap();
+            series.insert(Channel::Yaw, vec![yaw_rad; time_s.len()]).unwrap();
+            series
+        };
+        // The longer it stands afterwards, the fewer are the windows in which it moves.
+        for duration_s in [1.4, 4.0, 9.0] {
+            for (course_rad, yaw_rad) in [(0.0, FRAC_PI_2), (0.6, 0.6 - FRAC_PI_2), (PI, -1.5)] {
+                let series = slide(duration_s, course_rad, yaw_rad);
+                assert_eq!(contradictions(&series), [], "{duration_s} {course_rad}");
+                let note = offset_note(&series).expect("a remark").to_string();
+                assert!(note.contains("slides or drifts"), "{note}");
+            }
+        }
+    }
+
+    /// What speeds ahead and to the left say is no offset of the yaw angle.
+    #[test]
+    fn body_velocities_that_give_the_path_confirm_the_yaw_angle() {
+        let time_s: Vec<f64> = (0..100).map(|i| f64::from(i) * 0.02).collect();
+        let drive = |[vx, vy]: [f64; 2]| {
+            let mut series = TimeSeries::new(time_s.clone()).unwrap();
+            let n_samples = time_s.len();
+            let x_m = time_s.iter().map(|t| 15.0 * t).collect();
+            for (channel, values) in [
+                (Channel::X, x_m),
+                (Channel::Y, vec![0.0; n_samples]),
+                (Channel::Yaw, vec![FRAC_PI_2; n_samples]),
+                (Channel::Vx, vec![vx; n_samples]),
+                (Channel::Vy, vec![vy; n_samples]),
+            ] {
+                series.insert(channel, values).unwrap();
+            }
+            contradictions(&series)
+        };
+        assert_eq!(drive([0.0, -15.0]), []);
+        let ahead = drive([15.0, 0.0]);
+        assert!(matches!(ahead[..], [Contradiction::CompassOrOffset { .. }]), "{ahead:?}");
     }
 
     #[test]

@@ -26,12 +26,15 @@ const FIRST_WAY_M: f64 = 1.0;
 const STEADY_RAD_S: f64 = 0.6;
 /// Angle between course and heading there from which it is looked at, rad.
 const LEAST_OFF_RAD: f64 = 0.5;
+/// Slowing from which a vehicle may slide across its heading, m/s²: that of ice. One that does not slow down so
+/// rolls along its heading.
+const SLIDING_M_S2: f64 = 1.0;
 
 /// What the course of a path says of the yaw angle.
 pub(super) enum OfCourse {
     /// It contradicts it.
     Contradiction(Contradiction),
-    /// The yaw angle turns with it, and is so far to its left, rad.
+    /// The yaw angle keeps to it, and is so far to its left, rad.
     Along(f64),
     /// Nothing: the vehicle does not drive, does not turn, or spins.
     Open,
@@ -43,24 +46,53 @@ fn windows(n_samples: usize) -> Option<impl Iterator<Item = (usize, usize)>> {
     Some((0..N_WINDOWS).map(move |i| (i * n_steps / N_WINDOWS, (i + 1) * n_steps / N_WINDOWS)))
 }
 
-/// Course and heading in the middle of each window in which the vehicle drives.
-fn courses(series: &TimeSeries) -> Option<Vec<(f64, f64)>> {
+/// What a path has while the vehicle drives.
+struct Courses {
+    /// Course and heading in the middle of each window.
+    pairs: Vec<(f64, f64)>,
+    /// By how much it becomes slower from the first of them to the last, m/s².
+    slowing_m_s2: f64,
+}
+
+impl Courses {
+    /// Whether the vehicle may slide across its heading: it slows down as tires that do not roll make it.
+    fn may_slide(&self) -> bool {
+        self.slowing_m_s2 >= SLIDING_M_S2
+    }
+
+    /// How far the heading is to the left of the course, rad, where the vehicle may slide across it in every window.
+    fn slide_rad(&self) -> Option<f64> {
+        let angle = |(course, yaw): &(f64, f64)| wrap_angle_rad(yaw - course);
+        let first_rad = angle(self.pairs.first()?);
+        let is_alike = |pair| wrap_angle_rad(angle(pair) - first_rad).abs() < RELATION_RAD;
+        let is_one = is_quarter(first_rad) && self.pairs.iter().all(is_alike);
+        (self.may_slide() && is_one).then_some(first_rad)
+    }
+}
+
+fn courses(series: &TimeSeries) -> Option<Courses> {
     let time_s = series.time_s();
     let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
     let yaw_rad = continued_rad(series.get(Channel::Yaw)?);
     let speed = speed_m_s(series);
     let is_moving = |i: usize| speed.as_ref().is_none_or(|speed| speed[i] >= MOVING_M_S);
-    let mut pairs = Vec::new();
+    let (mut pairs, mut speeds) = (Vec::new(), Vec::new());
     for (from, to) in windows(time_s.len())?.filter(|(from, to)| is_moving(*from) && is_moving(*to))
     {
         let moved_m = [x[to] - x[from], y[to] - y[from]];
         let duration_s = time_s[to] - time_s[from];
-        if moved_m[0].hypot(moved_m[1]) < DRIVING_M_S * duration_s {
+        let way_m = moved_m[0].hypot(moved_m[1]);
+        if way_m < DRIVING_M_S * duration_s {
             continue;
         }
         pairs.push((moved_m[1].atan2(moved_m[0]), (yaw_rad[from] + yaw_rad[to]) / 2.0));
+        speeds.push(((time_s[from] + time_s[to]) / 2.0, way_m / duration_s));
     }
-    Some(pairs)
+    let slowing_m_s2 = match speeds[..] {
+        [(first_s, fast_m_s), .., (last_s, slow_m_s)] => (fast_m_s - slow_m_s) / (last_s - first_s),
+        _ => 0.0,
+    };
+    Some(Courses { pairs, slowing_m_s2 })
 }
 
 /// Whether an angle is a right one, to either side.
@@ -80,9 +112,11 @@ fn compass_or_offset(angle_rad: f64) -> Contradiction {
 
 /// Compares the course with the yaw angle wherever the vehicle drives.
 pub(super) fn against_path(series: &TimeSeries) -> OfCourse {
-    let Some(pairs) = courses(series).filter(|pairs| pairs.len() >= N_WINDOWS / 4) else {
-        return OfCourse::Open;
-    };
+    let Some(courses) = courses(series) else { return OfCourse::Open };
+    if courses.pairs.len() < N_WINDOWS / 4 {
+        return courses.slide_rad().map_or(OfCourse::Open, OfCourse::Along);
+    }
+    let (pairs, may_slide) = (&courses.pairs, courses.may_slide());
     let course_rad = continued_rad(&pairs.iter().map(|(course, _)| *course).collect::<Vec<_>>());
     let turned = |values: &[f64]| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -90,29 +124,28 @@ pub(super) fn against_path(series: &TimeSeries) -> OfCourse {
     };
     let found = |of: Option<Contradiction>| of.map_or(OfCourse::Open, OfCourse::Contradiction);
     let course_turn = turned(&course_rad);
-    let in_degrees = yaw_unit(&course_rad, &pairs, course_turn);
+    let in_degrees = yaw_unit(&course_rad, pairs, course_turn);
     // A relation `course − sign · ψ = constant`, with the constant and how far it is off at most.
     let relation = |sign: f64| {
         let off: Vec<f64> =
-            course_rad.iter().zip(&pairs).map(|(course, (_, yaw))| course - sign * yaw).collect();
+            course_rad.iter().zip(pairs).map(|(course, (_, yaw))| course - sign * yaw).collect();
         let mean = off.iter().sum::<f64>() / off.len() as f64;
         (mean, off.iter().map(|off| (off - mean).abs()).fold(0.0, f64::max))
     };
     let [(behind, along), (sum, against)] = [relation(1.0), relation(-1.0)];
     let angle_rad = wrap_angle_rad(-behind);
     let is = |angle_rad: f64| wrap_angle_rad(sum - angle_rad).abs() < 2.0 * RELATION_RAD;
+    let is_across = along < RELATION_RAD && is_quarter(angle_rad);
     if course_turn < LEAST_COURSE_TURN_RAD {
-        let of_straight = || {
-            let is_across = along < RELATION_RAD && is_quarter(angle_rad);
-            is_across.then(|| match is(FRAC_PI_2) {
-                true => compass_or_offset(angle_rad),
-                false => Contradiction::Offset { angle_rad },
-            })
+        return match in_degrees {
+            None if is_across && may_slide => OfCourse::Along(angle_rad),
+            None if is_across && is(FRAC_PI_2) => found(Some(compass_or_offset(angle_rad))),
+            None if is_across => found(Some(Contradiction::Offset { angle_rad })),
+            in_degrees => found(in_degrees),
         };
-        return found(in_degrees.or_else(of_straight));
     }
     if along < RELATION_RAD {
-        return match is_quarter(angle_rad) {
+        return match is_across && !may_slide {
             true => OfCourse::Contradiction(Contradiction::Offset { angle_rad }),
             false => OfCourse::Along(angle_rad),
         };
@@ -131,8 +164,8 @@ pub(super) fn against_path(series: &TimeSeries) -> OfCourse {
     found(in_degrees)
 }
 
-/// That a yaw angle turns with the path at an angle to it all along, as that of a car that drifts or one that is counted
-/// from another axis. Where there is a lateral velocity, that is compared instead.
+/// That a yaw angle keeps to the path at an angle to it all along, as that of a car that slides or drifts or one that is
+/// counted from another axis. Where there is a lateral velocity, that is compared instead.
 pub(super) fn offset_note(series: &TimeSeries) -> Option<Note> {
     if series.get(Channel::Vy).is_some() || held_positions(series).is_some() {
         return None;
@@ -141,8 +174,8 @@ pub(super) fn offset_note(series: &TimeSeries) -> Option<Note> {
     let is_off = (LEAST_OFF_RAD..PI - LEAST_OFF_RAD).contains(&angle_rad.abs());
     is_off.then(|| Note::Doubt {
         text: format!(
-            "the yaw angle is {} of the direction in which the vehicle moves, all along: the vehicle drifts, or the \
-             angle is counted from another axis (map yaw_offset={:.0}:deg)",
+            "the yaw angle is {} of the direction in which the vehicle moves, all along: the vehicle slides or drifts, \
+             or the angle is counted from another axis (map yaw_offset={:.0}:deg)",
             to_a_side(angle_rad),
             -angle_rad.to_degrees()
         ),
