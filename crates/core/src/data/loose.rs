@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use crate::data::refused::Refused;
 use crate::data::si_values::{instants_s, si_values};
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
@@ -297,8 +298,8 @@ fn load_columns(
         let values = si_values(table, column, series.time_s(), &settings);
         let values = values.map_err(|error| {
             let shift_s = clock::controls_shift_s(&series, kind, map);
-            let error = degrees::asked(table, column, map, shift_s, error);
-            steering::asked(table, column, map, shift_s, error)
+            let refused = Refused { table, column, map, shift_s };
+            steering::asked(&refused, degrees::asked(&refused, error))
         })?;
         insert(&mut series, column.channel, values, table)?;
     }

@@ -56,6 +56,7 @@ mod quality_phrase;
 mod read_settings;
 #[cfg(test)]
 mod read_tests;
+mod refused;
 mod rows;
 mod series;
 mod si_values;

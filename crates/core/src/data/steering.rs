@@ -3,12 +3,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::columns::open_question;
 use crate::data::error::quoted;
+use crate::data::refused::Refused;
 use crate::data::spelling::letters_and_digits;
-use crate::data::{
-    Channel, ColumnMap, ColumnSource, ColumnUse, DataError, Note, Table, TimeSeries,
-};
+use crate::data::{Channel, ColumnMap, ColumnUse, DataError, Note, TimeSeries};
 use crate::ranges::STEERING_WHEEL_ANGLE;
 use crate::units::{Quantity, Unit};
 
@@ -20,44 +18,28 @@ const STEERED_RAD: f64 = 0.02;
 
 /// Asks whether an angle that no road wheel reaches is that of the steering wheel; any other error stays as it is.
 ///
-/// - `shift_s`: what would let the record begin at 0, if that has to be said as well, s.
 /// - `error`: why the column is refused.
-pub(super) fn asked(
-    table: &Table,
-    column: &ColumnUse,
-    map: Option<&ColumnMap>,
-    shift_s: Option<f64>,
-    error: DataError,
-) -> DataError {
-    let is_said = map.is_some_and(|map| map.get(Channel::Steer).is_some());
+pub(super) fn asked(refused: &Refused<'_>, error: DataError) -> DataError {
+    let column = refused.column;
+    let is_said = refused.map.is_some_and(|map| map.get(Channel::Steer).is_some());
     let (DataError::ImplausibleValue { line, value, range, .. }, Channel::Steer, [_], false) =
         (&error, column.channel, &column.terms[..], is_said)
     else {
         return error;
     };
-    let idx = column.number.saturating_sub(1);
-    let fits = |unit: &Unit| {
-        let is_angle = |row_idx| {
-            let angle = table.number(row_idx, idx).map(|number| unit.to_si(number));
-            angle.is_some_and(|angle_rad| STEERING_WHEEL_ANGLE.contains(angle_rad))
-        };
-        (0..table.n_rows()).all(is_angle)
-    };
     let in_degrees = Quantity::Angle.units().iter().find(|unit| unit.symbol == "deg").copied();
     let unit = if column.unit_is_stated { Some(column.unit) } else { in_degrees };
-    let Some(unit) = unit.filter(fits) else { return error };
+    let is_angle = |unit: &Unit| refused.is_within(&STEERING_WHEEL_ANGLE, *unit);
+    let Some(unit) = unit.filter(is_angle) else { return error };
     let what = format!(
-        "column {} {} turns further than road wheels do: line {line} has {}, expected {}; an angle of the steering wheel is read as such, with the \
-         steering ratio (--steering-ratio)",
+        "column {} {} turns further than road wheels do: line {line} has {}, expected {}; an angle of the steering \
+         wheel is read as such, with the steering ratio (--steering-ratio)",
         column.number,
         quoted(&column.name),
         range.shown(*value),
         range.explained()
     );
-    let mut map = map.cloned().unwrap_or_default();
-    map.settings.time_shift_s = shift_s.or(map.settings.time_shift_s);
-    let answer = ColumnSource { unit: Some(unit), ..column.source() };
-    open_question(table, Some(&map), what, [(Channel::SteeringWheel, answer)])
+    refused.asked(what, Channel::SteeringWheel, unit)
 }
 
 /// Says of an angle whose header is open, and which road wheels may have, that it was taken as theirs.
@@ -73,8 +55,7 @@ pub(super) fn note(
     if !is_open || is_said || columns.contains_key(&Channel::SteeringWheel) {
         return None;
     }
-    let largest_rad =
-        series.get(Channel::Steer)?.iter().fold(0.0, |of: f64, angle| of.max(angle.abs()));
+    let largest_rad = largest_rad(series.get(Channel::Steer)?);
     Some(Note::Doubt {
         text: format!(
             "column {} {} is taken as the angle of the road wheels, which turn by up to {:.1} deg; if it is that of the \
@@ -87,12 +68,15 @@ pub(super) fn note(
     })
 }
 
+/// The largest size of an angle.
+fn largest_rad(angles: &[f64]) -> f64 {
+    angles.iter().fold(0.0, |of: f64, angle| of.max(angle.abs()))
+}
+
 /// Says that the front wheels turn against each other, so that their mean, which steers a car, is next to nothing: one of
 /// them counts to the other side.
 pub(super) fn opposed(columns: &BTreeMap<Channel, ColumnUse>, series: &TimeSeries) -> Option<Note> {
     let (left, right) = series.get(Channel::SteerFl).zip(series.get(Channel::SteerFr))?;
-    let largest_rad =
-        |angles: &[f64]| angles.iter().fold(0.0, |of: f64, angle| of.max(angle.abs()));
     let is_steered = largest_rad(left).min(largest_rad(right)) > STEERED_RAD;
     let together: f64 = left.iter().zip(right).map(|(left, right)| left * right).sum();
     let column = columns.get(&Channel::SteerFr)?;
