@@ -3,9 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::data::{MAX_SETTINGS_BYTES, read_utf8};
+use crate::data::read_bytes;
 use crate::site::cloud::{OF_MERCATOR, StatedUnit, of_wkt};
 use crate::site::{LengthUnit, SiteError};
+
+/// Bytes of such a file. A program may write the statistics of a picture beside its coordinate system.
+const MAX_BYTES: u64 = 16 << 20;
 
 /// The file beside a picture, or beside its world file, with the coordinate system; `None` if there is none.
 pub(super) fn projection_beside(picture: &Path, world_file: &Path) -> Option<PathBuf> {
@@ -30,9 +33,7 @@ pub(super) fn unit_of_world_file(
     let Some(path) = projection_beside(picture, world_file) else {
         return Ok(chosen.unwrap_or_default());
     };
-    // What a file of XML has in quotation marks.
-    let text = read_utf8(&path, MAX_SETTINGS_BYTES)?.replace("&quot;", "\"");
-    let stated = of_wkt(&text).plane;
+    let stated = of_wkt(&system_in(&read_bytes(&path, MAX_BYTES)?)).plane;
     let wrong = |message: String| Err(SiteError::Projection { path, message });
     match (chosen, stated) {
         (_, Some(StatedUnit::Mercator)) => wrong(OF_MERCATOR.to_owned()),
@@ -53,6 +54,12 @@ pub(super) fn unit_of_world_file(
         ),
         (None, None) => Ok(LengthUnit::Metre),
     }
+}
+
+/// The text of a coordinate system. Its words are ASCII in any encoding, and names of places may be in another than
+/// UTF-8; a file of XML has its quotation marks in words.
+fn system_in(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).replace('\0', "").replace("&quot;", "\"")
 }
 
 #[cfg(test)]
@@ -95,6 +102,16 @@ mod tests {
         }
         std::fs::write(at("road.prj"), system("Transverse_Mercator", "\"Meter\",1.0")).unwrap();
         assert_eq!(unit(None), Ok(LengthUnit::Metre));
+        // Names in Latin-1, and a file in UTF-16, as shells of Windows write it.
+        let latin: Vec<u8> = lambert.replace("\"a\"", "\"Stra#e\"").bytes().collect();
+        let latin: Vec<u8> =
+            latin.into_iter().map(|of| if of == b'#' { 0xdf } else { of }).collect();
+        let wide = lambert.encode_utf16().flat_map(u16::to_le_bytes);
+        let wide: Vec<u8> = [0xff, 0xfe].into_iter().chain(wide).collect();
+        for bytes in [latin, wide] {
+            std::fs::write(at("road.prj"), bytes).unwrap();
+            assert_eq!(unit(None), Ok(LengthUnit::SurveyFoot));
+        }
         // A file of XML without a system, and with one.
         std::fs::remove_file(at("road.prj")).unwrap();
         let statistics = "<PAMDataset><MDI key=\"STATISTICS_MEAN\">91</MDI></PAMDataset>";

@@ -133,8 +133,14 @@ pub(in crate::site) fn of_wkt(text: &str) -> Stated {
 }
 
 /// Whether a text in small letters names the projection of Mercator, and not one along a meridian or at an angle to
-/// it, whose lengths are nearly those on the ground.
+/// it, whose lengths are nearly those on the ground. Where it has a projection of its own, names of systems and areas do
+/// not count.
 fn is_of_mercator(text: &str) -> bool {
+    let projection = ["projection[\"", "method[\""].iter().find_map(|word| {
+        let (_, rest) = text.split_once(word)?;
+        rest.split('"').next()
+    });
+    let text = projection.unwrap_or(text);
     text.match_indices("mercator").any(|(at, _)| {
         let before = text.get(..at).unwrap_or_default();
         let before = before.trim_end_matches(|c: char| !c.is_alphanumeric());
@@ -231,8 +237,11 @@ mod tests {
         }
         for projection in ["Transverse_Mercator", "Hotine_Oblique_Mercator", "Transverse Mercator"]
         {
-            let system = format!("PROJCS[\"b\",PROJECTION[\"{projection}\"],UNIT[\"metre\",1]]");
-            assert_eq!(of_wkt(&system), of(length(METRES), None), "{system}");
+            for name in ["b", "Trans Mercator"] {
+                let system =
+                    format!("PROJCS[\"{name}\",PROJECTION[\"{projection}\"],UNIT[\"metre\",1]]");
+                assert_eq!(of_wkt(&system), of(length(METRES), None), "{system}");
+            }
         }
         // Heights behind the system in the plane, as ArcGIS writes them, and within it.
         for system in [
