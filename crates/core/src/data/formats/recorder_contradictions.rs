@@ -65,6 +65,9 @@ impl Table563<'_> {
             (self.numbers)(idx).into_iter().flatten().map(|value| sign * unit.to_si(value));
         let values = values.filter(|value| SPEED.contains(*value));
         let stated = values.max_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        // A largest change without a sign may be its size.
+        let has_sign = stated < 0.0 || stated_side(title).is_some();
+        let stated = if has_sign { stated } else { stated.copysign(recorded) };
         are_other([recorded, stated]).then(|| {
             format!(
                 "the largest change of velocity {name} is {recorded:.2} m/s by its record and {stated:.2} m/s by \

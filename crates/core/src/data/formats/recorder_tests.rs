@@ -231,6 +231,16 @@ fn columns_of_a_change_of_velocity_that_contradict_each_other_are_said() {
     assert_eq!([doubts(second, "-15"), doubts(second, "-31")], [1, 0]);
     let largest = "Maximum Delta-V Longitudinal";
     assert_eq!([doubts(largest, "-15"), doubts(largest, "-33")], [1, 0]);
+    // Without a sign it may be the size.
+    let sizes = |end| {
+        let text = format!(
+            "Time [ms],Delta-V Longitudinal [km/h],{largest} [km/h]\n\
+             0,0,{end}\n50,-16,\n100,-30,\n120,-32,\n"
+        );
+        let doubts = read(&text, None).unwrap().doubts;
+        doubts.iter().filter(|doubt| doubt.contains("contradict")).count()
+    };
+    assert_eq!([sizes("33"), sizes("15")], [0, 1]);
 }
 
 #[test]
