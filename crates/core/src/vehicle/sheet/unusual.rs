@@ -1,6 +1,6 @@
 //! What a data sheet states that no car of its other figures has.
 
-use crate::vehicle::sheet::{DataSheet, Rule, SheetQuantity as Q};
+use crate::vehicle::sheet::{DataSheet, Rule, SheetQuantity as Q, VehicleClass};
 
 use super::rules::is_model;
 
@@ -8,8 +8,11 @@ use super::rules::is_model;
 const FAR: f64 = 4.0;
 
 /// Factor between a stated value and its rule at least: that of miles and kilometres. Vehicles of the library
-/// stay within 1.2, a loaded van within 1.5; a pound for a kilogram and a diameter for a radius are beyond.
+/// stay within 1.2; a pound for a kilogram and a diameter for a radius are beyond.
 const FACTOR: f64 = 1.6;
+
+/// The same of the mass of a van, which may carry its own weight; a pound for a kilogram is beyond that, too.
+const LADEN_FACTOR: f64 = 2.0;
 
 /// Width from which a vehicle is a truck or a bus, of which the rules know nothing, m.
 const TRUCK_WIDTH_M: f64 = 2.2;
@@ -51,7 +54,9 @@ impl DataSheet {
             let stated = self.known(quantity)?;
             let rule = Rule::new(quantity, self.class, self.drive, &values);
             let by_rule = rule.median;
-            let is_by_factor = !(by_rule / FACTOR..=by_rule * FACTOR).contains(&stated);
+            let is_laden = quantity == Q::Mass && self.class == VehicleClass::Van;
+            let above = if is_laden { LADEN_FACTOR } else { FACTOR };
+            let is_by_factor = !(by_rule / FACTOR..=by_rule * above).contains(&stated);
             let is_far = stated < rule.at(-FAR) || stated > rule.at(FAR);
             (is_by_factor && is_far).then_some(Unusual { quantity, stated, by_rule })
         };
@@ -63,7 +68,6 @@ impl DataSheet {
 mod tests {
     use super::*;
     use crate::vehicle::LibraryVehicle;
-    use crate::vehicle::sheet::VehicleClass;
 
     #[test]
     fn a_figure_in_another_unit_is_found() {
@@ -90,14 +94,17 @@ mod tests {
             assert_eq!(quantities, [quantity], "{found:?}");
             assert_eq!(found[0].stated, value);
         }
-        // A loaded van, a truck and a model of a car.
-        let van = DataSheet::new("van", VehicleClass::Van)
-            .with(Q::Mass, 3500.0)
-            .with(Q::Length, 5.93)
-            .with(Q::Width, 1.99);
+        // Loaded vans, a truck and a model of a car; and a van in pounds.
+        let van = |mass_kg: f64, length_m: f64| {
+            DataSheet::new("van", VehicleClass::Van)
+                .with(Q::Mass, mass_kg)
+                .with(Q::Length, length_m)
+                .with(Q::Width, 1.99)
+        };
+        assert_eq!(van(2300.0 / 0.453_592_37, 5.93).unusual().len(), 1);
         let truck = car().with(Q::Mass, 18e3).with(Q::Length, 11.0).with(Q::Width, 2.5);
         let model = car().with(Q::Mass, 4.0).with(Q::Length, 0.6).with(Q::Width, 0.3);
-        for sheet in [van, truck, model] {
+        for sheet in [van(3500.0, 5.93), van(5500.0, 7.37), truck, model] {
             assert_eq!(sheet.unusual(), [], "{}", sheet.name);
         }
     }
