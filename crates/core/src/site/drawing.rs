@@ -94,7 +94,8 @@ impl Drawing {
         let is_usual = USUAL_SIDE_M.contains(&width_m.max(height_m));
         (!is_usual).then(|| {
             format!(
-                "it is {width_m:.1} x {height_m:.1} m large in {unit}: is that its unit? Say another one (unit in [dxf])"
+                "it is {width_m:.1} x {height_m:.1} m large in {unit}: is that its unit (unit in [dxf] says another one), \
+                 or does something in it lie far off?"
             )
         })
     }

@@ -223,7 +223,7 @@ fn a_drawing_as_large_or_small_as_no_place_is_said() {
         let (_folder, file) = saved(&drawing);
         let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
         let notes = read.notes(std::path::Path::new("survey.dxf"));
-        notes.iter().any(|note| note.contains("is that its unit?"))
+        notes.iter().any(|note| note.contains("is that its unit"))
     };
     assert!(is_said(Units::Meters, 50_000.0), "millimetres that are said to be metres");
     assert!(is_said(Units::Inches, 50.0), "metres that are said to be inches");
