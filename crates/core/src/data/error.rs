@@ -607,15 +607,19 @@ fn or_go_on(before_s: f64, after_s: f64) -> &'static str {
 /// What a recorder keeps of a driver beside the speed.
 const OF_DRIVER: [&str; 4] = ["brake", "accelerator", "throttle", "steering"];
 
-/// What helps where columns are those of a recorder: a change of velocity, which no channel is, or the speed beside what
-/// the driver did.
+/// What helps where columns may be those of a recorder: a change of velocity, which no channel is, or the speed beside
+/// what the driver did, without places, which a log has.
 pub(super) fn or_recorder(found: &[String]) -> &'static str {
     let keys: Vec<String> = found.iter().map(|name| spelling::letters_and_digits(name)).collect();
     let has = |words: &[&str]| keys.iter().any(|key| words.iter().any(|word| key.contains(word)));
-    let is_of_recorder =
-        keys.iter().any(|key| spelling::is_delta_v(key)) || has(&["speed"]) && has(&OF_DRIVER);
+    let is_place = |name: &String| {
+        matches!(spelling::meaning(name), spelling::Meaning::Channel(Channel::X | Channel::Y, _))
+    };
+    let is_log = has(&["latitude", "longitude"]) || found.iter().any(is_place);
+    let is_of_recorder = keys.iter().any(|key| spelling::is_delta_v(key))
+        || has(&["speed"]) && has(&OF_DRIVER) && !is_log;
     match is_of_recorder {
-        true => "; a table of an event data recorder: impactlab import --recorder",
+        true => "; a table of an event data recorder is read by: impactlab import --recorder",
         false => "",
     }
 }

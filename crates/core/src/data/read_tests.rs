@@ -76,8 +76,14 @@ fn a_blank_cell_of_a_recorder_names_the_option_that_reads_it() {
     assert!(said.contains("f.csv:3:2: ") && said.contains(hint), "{said}");
     let before = error("Time [s],Speed [mph],Service Brake\n-1,31,Off\n0,27,On\n", "");
     assert!(before.contains(hint), "{before}");
-    let log = error("time [s],x [m],y [m]\n0,0,0\n1,,0\n", "");
-    assert!(log.contains("f.csv:3:2: ") && !log.contains(hint), "{log}");
+    for log in [
+        "time [s],x [m],y [m]\n0,0,0\n1,,0\n",
+        "time [s],x [m],y [m],speed [m/s],steering_wheel [deg]\n0,0,0,15,0\n1,,0,15,1\n",
+        "time [s],latitude [deg],longitude [deg],speed [km/h],throttle [%]\n0,48,11,50,0\n1,,11,50,1\n",
+    ] {
+        let said = error(log, "");
+        assert!(said.contains("f.csv:3:2: ") && !said.contains(hint), "{said}");
+    }
 }
 
 /// Test logs mean the steering wheel by `Lenkwinkel` more often than not.
