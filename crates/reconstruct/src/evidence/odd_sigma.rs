@@ -8,9 +8,11 @@ use crate::evidence::{
 };
 use impactlab_core::units::{Phrase, PhraseValue};
 
-/// Factor between a stated standard deviation and that of the program: far more than instruments differ, and less
-/// than between degrees and radians or metres and centimetres.
-const FACTOR: f64 = 30.0;
+/// Factor by which a stated standard deviation is larger than that of the program: far more than ways of measuring
+/// differ, and less than between degrees and radians or metres and centimetres.
+const ABOVE: f64 = 30.0;
+/// Factor by which it is smaller. A scanner or a scale is up to 60 times as exact as a tape or the mass of a type.
+const BELOW: f64 = 100.0;
 
 impl Evidence {
     /// The stated standard deviations that are far from what such an item is known to, in words.
@@ -44,7 +46,7 @@ impl OfItem<'_> {
     fn judge(&mut self, sigma: &Sigma, value: f64, stated: Option<f64>) {
         let Some(stated) = stated else { return };
         let usual = sigma.default_at(value);
-        if (usual / FACTOR..=usual * FACTOR).contains(&stated) {
+        if (usual / BELOW..=usual * ABOVE).contains(&stated) {
             return;
         }
         let quantity = sigma.field.range.quantity;
@@ -107,5 +109,9 @@ mod tests {
         let mass = "struck_car.mass_sigma_kg is 0.03 kg, where 45 kg is usual: ";
         assert!(found[0].starts_with(mass), "{found:?}");
         assert!(found[1].starts_with("mark[0].sigma_m is 10 m, where 0.1 m is usual"), "{found:?}");
+        // A scale to 1 kg and a scanner to 3 mm.
+        evidence.struck_car.mass_kg = stated(1900.0, 1.0);
+        evidence.marks[0].sigma_m = Some(0.003);
+        assert!(evidence.odd_sigmas().is_empty(), "{:?}", evidence.odd_sigmas());
     }
 }
