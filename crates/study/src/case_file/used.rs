@@ -228,7 +228,12 @@ impl CaseFile {
                         variant.name
                     )
                 };
-                found.extend(inline.into_iter().chain(files).map(said));
+                // Questions of one collision name its files each.
+                for sentence in inline.into_iter().chain(files).map(said) {
+                    if !found.contains(&sentence) {
+                        found.push(sentence);
+                    }
+                }
             }
         }
         found
@@ -343,7 +348,7 @@ mod tests {
         let asked = vec![evidence("one"), file("/x/a.toml")];
         let unused = |unasked| CaseFile::new("case", variant(asked.clone(), unasked)).unused();
         assert_eq!(unused(asked.clone()), [""; 0]);
-        let said = unused(vec![evidence("two"), file("/x/b.toml")]);
+        let said = unused(vec![evidence("two"), file("/x/b.toml"), file("/x/b.toml")]);
         let [of_evidence, of_file] = &said[..] else { panic!("{said:?}") };
         assert!(of_evidence.contains("the evidence \"two\" is used by no question"), "{said:?}");
         assert!(of_file.contains("b.toml is used by no question"), "{said:?}");
