@@ -340,10 +340,7 @@ impl From<ColumnMap> for String {
 
 fn short_names() -> String {
     let names: Vec<_> = Channel::ALL.iter().map(|channel| channel.short_name()).collect();
-    format!(
-        "{}; or separator, decimal, thousands, sheet, deck, header, units, shift, y_axis, headings, yaw_offset, antenna, velocities",
-        names.join(", ")
-    )
+    format!("{}; or {}", names.join(", "), ReadSettings::NAMES.join(", "))
 }
 
 #[cfg(test)]

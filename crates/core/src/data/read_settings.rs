@@ -71,6 +71,23 @@ pub struct ReadSettings {
 }
 
 impl ReadSettings {
+    /// The names of all settings, in the order in which they are written.
+    pub(super) const NAMES: [&str; 13] = [
+        "separator",
+        "decimal",
+        "thousands",
+        "sheet",
+        "deck",
+        "header",
+        "units",
+        "shift",
+        "y_axis",
+        "headings",
+        "yaw_offset",
+        "antenna",
+        "velocities",
+    ];
+
     /// Takes a part of the text of a map if its name is that of a setting.
     ///
     /// - returns whether it is.
@@ -227,23 +244,60 @@ impl fmt::Display for ReadSettings {
             true => "comma".to_owned(),
             false => "point".to_owned(),
         };
-        let parts = [
-            ("separator", self.separator.map(|of| of.name().to_owned())),
-            ("decimal", self.decimal_comma.map(decimal)),
-            ("thousands", self.thousands.map(|of| of.name().to_owned())),
-            ("sheet", self.sheet.as_ref().map(SheetRef::to_string)),
-            ("deck", self.deck.map(|of| of.name().to_owned())),
-            ("header", header),
-            ("units", self.units_line.map(|line| line.to_string())),
-            ("shift", self.time_shift_s.map(|shift_s| format!("{shift_s}:s"))),
-            ("y_axis", self.y_to_right.then(|| "right".to_owned())),
-            ("headings", self.compass_headings.then(|| "compass".to_owned())),
-            ("yaw_offset", self.yaw_offset_rad.map(|of| format!("{}:deg", of.to_degrees()))),
-            ("antenna", self.antenna_m.map(|[x_m, y_m]| format!("{x_m} {y_m}"))),
-            ("velocities", velocities),
+        // As NAMES has them.
+        let values = [
+            self.separator.map(|of| of.name().to_owned()),
+            self.decimal_comma.map(decimal),
+            self.thousands.map(|of| of.name().to_owned()),
+            self.sheet.as_ref().map(SheetRef::to_string),
+            self.deck.map(|of| of.name().to_owned()),
+            header,
+            self.units_line.map(|line| line.to_string()),
+            self.time_shift_s.map(|shift_s| format!("{shift_s}:s")),
+            self.y_to_right.then(|| "right".to_owned()),
+            self.compass_headings.then(|| "compass".to_owned()),
+            self.yaw_offset_rad.map(|of| format!("{}:deg", of.to_degrees())),
+            self.antenna_m.map(|[x_m, y_m]| format!("{x_m} {y_m}")),
+            velocities,
         ];
-        let given = parts.into_iter().filter_map(|(name, value)| Some((name, value?)));
-        let text: Vec<String> = given.map(|(name, value)| format!("{name}={value}")).collect();
+        let given = Self::NAMES.into_iter().zip(values);
+        let text = given.filter_map(|(name, value)| Some(format!("{name}={}", value?)));
+        let text: Vec<String> = text.collect();
         f.write_str(&text.join(","))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_setting_is_taken_and_written_by_its_name() {
+        for name in ReadSettings::NAMES {
+            let taken = ReadSettings::default().take(name, "");
+            assert!(!matches!(taken, Ok(false)), "{name}");
+        }
+        let values = [
+            "tab",
+            "comma",
+            "point",
+            "Messung",
+            DeckUnits::ALL[0].name(),
+            "5",
+            "6",
+            "-2:s",
+            "right",
+            "compass",
+            "-90:deg",
+            "0.4 -0.3",
+            "world",
+        ];
+        let mut settings = ReadSettings::default();
+        for (name, value) in ReadSettings::NAMES.into_iter().zip(values) {
+            assert!(settings.take(name, value).unwrap(), "{name}={value}");
+        }
+        let given = ReadSettings::NAMES.into_iter().zip(values);
+        let text: Vec<String> = given.map(|(name, value)| format!("{name}={value}")).collect();
+        assert_eq!(settings.to_string(), text.join(","));
     }
 }
