@@ -10,34 +10,52 @@ use crate::units::Quantity;
 /// of which it is the sum.
 pub(super) const NO_RECORD: [&str; 3] = ["maximum", "persample", "changeper"];
 
-/// Words of a column, in letters and digits, that is positive to the left or counterclockwise, and to the right. The
-/// former are looked for first, since some of them have the latter in them.
-const TO_LEFT: [&str; 7] = [
+/// Words of a column, in letters and digits, that is positive to the left or counterclockwise, and to the right.
+const TO_LEFT: [&str; 8] = [
     "leftpositive",
     "positiveleft",
     "positivetoleft",
     "positivetotheleft",
     "ccwpositive",
     "positiveccw",
-    "counterclockwise",
+    "counterclockwisepositive",
+    "positivecounterclockwise",
 ];
-const TO_RIGHT: [&str; 7] = [
+const TO_RIGHT: [&str; 8] = [
     "rightpositive",
     "positiveright",
     "positivetoright",
     "positivetotheright",
     "cwpositive",
     "positivecw",
-    "clockwise",
+    "clockwisepositive",
+    "positiveclockwise",
 ];
 
-/// The side to which a column says that it is positive.
+/// The side to which a column says that it is positive; `None` also where it names both sides, or one to which it is
+/// negative.
 pub(super) fn stated_side(name: &str) -> Option<RecordedSide> {
-    let key = letters_and_digits(name);
-    match () {
-        () if has(&key, &TO_LEFT) => Some(RecordedSide::Left),
-        () if has(&key, &TO_RIGHT) => Some(RecordedSide::Right),
-        () => None,
+    let key_of = |text: &str| letters_and_digits(text).replace("anticlockwise", "counterclockwise");
+    // `right positive, left negative` without its comma has `positive left` in it.
+    let mut parts = name.split([',', ';', '/', '(', ')']).map(key_of);
+    let in_part = parts.find_map(|key| {
+        let others = key.replace("counterclockwise", "").replace("ccw", "");
+        one_side(has(&key, &TO_LEFT), has(&others, &TO_RIGHT))
+    });
+    in_part.or_else(|| {
+        let key = key_of(name);
+        let others = key.replace("counterclockwise", "");
+        let side = one_side(others.len() < key.len(), others.contains("clockwise"));
+        side.filter(|_| !key.contains("negative"))
+    })
+}
+
+/// The one of both sides that is named alone.
+fn one_side(is_left: bool, is_right: bool) -> Option<RecordedSide> {
+    match (is_left, is_right) {
+        (true, false) => Some(RecordedSide::Left),
+        (false, true) => Some(RecordedSide::Right),
+        _ => None,
     }
 }
 
@@ -231,5 +249,35 @@ fn is_on(cell: &str) -> Option<bool> {
         "off" | "no" | "notapplied" | "released" | "notpressed" | "inactive" | "false"
         | "nonengaged" | "notengaged" | "aus" | "nein" | "falsch" => Some(false),
         _ => number(cell).filter(|number| [0.0, 1.0].contains(number)).map(|number| number != 0.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_side_of_a_column_is_the_one_to_which_it_is_positive() {
+        use RecordedSide::{Left, Right};
+        for (words, side) in [
+            ("counterclockwise", Some(Left)),
+            ("Anticlockwise Positive", Some(Left)),
+            ("CCW positive", Some(Left)),
+            ("positive to the left", Some(Left)),
+            ("clockwise", Some(Right)),
+            ("positive clockwise", Some(Right)),
+            ("clockwise positive, counterclockwise negative", Some(Right)),
+            ("anticlockwise positive, clockwise negative", Some(Left)),
+            ("left negative, right positive", Some(Right)),
+            ("(right positive, left negative)", Some(Right)),
+            ("right positive left negative", None),
+            // Which sign is meant stands in signs, or only that of the negative side is told.
+            ("clockwise +, counterclockwise -", None),
+            ("clockwise negative", None),
+            ("", None),
+        ] {
+            let name = format!("Steering Wheel Angle, {words} [deg]");
+            assert_eq!(stated_side(&name), side, "{words}");
+        }
     }
 }
