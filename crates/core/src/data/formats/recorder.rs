@@ -286,7 +286,10 @@ impl RecorderRecord {
         let texts = |idx: usize| section.texts(idx);
         let table = Table563 { header: section.header(), numbers: &numbers, texts: &texts };
         if section.is_turned {
-            self.description += &format!("; the times of {:?} stand in a row", section.title);
+            self.description += "; times stand in a row";
+            if !section.title.is_empty() {
+                self.description += &format!(" in {:?}", section.title);
+            }
         }
         // Modules with their times in a row have them among the status of the system, too.
         let has_controls = is_before_crash(section) || section.is_turned && !is_over_time(section);
@@ -307,8 +310,7 @@ impl RecorderRecord {
         };
         let rows: Vec<Row> = table.rows().map(row).collect();
         let (at, rows) = upright(&rows)?;
-        let title = "table".to_owned();
-        (at == 0).then_some(Section { title, rows, is_turned: true })
+        (at == 0).then_some(Section { title: String::new(), rows, is_turned: true })
     }
 
     fn from_table(table: &Table) -> Self {
