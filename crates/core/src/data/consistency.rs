@@ -11,8 +11,9 @@
 //! ```
 //!
 //! A path along an axis that does not turn leaves open whether ψ is that of a compass or has an offset; both are then
-//! told. Across its heading a vehicle moves only while it slides, which makes it slower: an angle between both that stays
-//! is no contradiction where it slows down, nor where velocities in body axes say the same.
+//! told. Across its heading a vehicle moves only while it slides, which makes it slower and does not turn with a bend: an
+//! angle between both that stays is no contradiction where it slows down on a straight path, nor where velocities in body
+//! axes say the same.
 //!
 //! A vehicle that spins moves in directions that have nothing to do with its heading; the path is compared
 //! with the heading only where one of these relations holds all along while the course turns, which no spin
@@ -342,6 +343,21 @@ mod tests {
         assert!(matches!(offset[..], [Contradiction::Offset { .. }]), "{offset:?}");
         assert_eq!(drive(0.2, FRAC_PI_2 - 0.2), [Contradiction::Compass]);
         assert_eq!(drive(0.6, 0.6), []);
+    }
+
+    /// A car that brakes in a bend does not slide through it at a right angle.
+    #[test]
+    fn an_offset_is_found_in_a_bend_in_which_the_car_brakes() {
+        let time_s: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.02).collect();
+        let column = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
+            time_s.iter().map(|t| f(0.3 * t - 0.02 * t * t)).collect()
+        };
+        let mut series = TimeSeries::new(time_s.clone()).unwrap();
+        series.insert(Channel::X, column(&|angle| 40.0 * angle.sin())).unwrap();
+        series.insert(Channel::Y, column(&|angle| 40.0 * (1.0 - angle.cos()))).unwrap();
+        series.insert(Channel::Yaw, column(&|angle| angle + FRAC_PI_2)).unwrap();
+        let found = contradictions(&series);
+        assert!(matches!(found[..], [Contradiction::Offset { .. }]), "{found:?}");
     }
 
     /// A car that is struck from the side and one that has turned by a quarter slide broadside until they stand.

@@ -145,7 +145,8 @@ pub(super) fn against_path(series: &TimeSeries) -> OfCourse {
         };
     }
     if along < RELATION_RAD {
-        return match is_across && !may_slide {
+        // No slide turns with a bend.
+        return match is_across {
             true => OfCourse::Contradiction(Contradiction::Offset { angle_rad }),
             false => OfCourse::Along(angle_rad),
         };
