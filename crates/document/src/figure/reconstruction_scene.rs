@@ -53,7 +53,7 @@ impl<'a> ReconstructionScene<'a> {
     /// The scene of an answer, with a particle of median speed at its end; one of each where several
     /// courses of events are possible.
     pub fn new(answer: &'a ReconstructAnswer, paths: &'a ReconstructedPaths) -> Self {
-        let at_end = |NamedPath { name, path }: &'a NamedPath| FollowedPath {
+        let at_end = |NamedPath { name, path, .. }: &'a NamedPath| FollowedPath {
             name,
             path,
             time_s: f64::INFINITY,
@@ -112,7 +112,7 @@ pub fn reconstruction_scene_figure(
         FigureElement::line("tire marks, computed", Role::Simulation, points)
     }));
     elements.extend(evidence_elements(scene, &shown, units));
-    let others = scene.others.iter().enumerate().map(|(idx, NamedPath { name, path })| {
+    let others = scene.others.iter().enumerate().map(|(idx, NamedPath { name, path, .. })| {
         (Role::Variant(idx + 1), FollowedPath { name, path, time_s: f64::INFINITY })
     });
     let front = scene.followed.map(|followed| (Role::Model, followed));

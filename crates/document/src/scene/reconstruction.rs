@@ -99,10 +99,10 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
         }
     }
     // The likeliest one is drawn last and named first.
-    for (idx, NamedPath { name, path }) in input.others.iter().enumerate().rev() {
+    for (idx, NamedPath { name, chance, path }) in input.others.iter().enumerate().rev() {
         let (motion, role) = (motion_of(path, &shape.body), SceneRole::Variant(idx + 1));
         // Its probability, so that not the colour alone says which one it is.
-        let tag = name.split_once(": ").map_or(driven, |(chance, _)| chance);
+        let tag = chance.as_deref().unwrap_or(driven);
         add(&mut scene, [name, tag], role, CarLook::Ghost, &shape, motion);
     }
     if let Some((name, path)) = input.followed {
@@ -206,9 +206,9 @@ mod tests {
         assert_eq!(drawn, expected);
     }
 
-    #[test]
-    fn a_motion_begins_and_ends_with_its_path() {
-        let point = |time_s: f64| PathPoint {
+    /// A point of a car that drives straight on at 10 m/s.
+    fn point(time_s: f64) -> PathPoint {
+        PathPoint {
             time_s,
             x_m: 10.0 * time_s,
             y_m: 0.0,
@@ -216,7 +216,45 @@ mod tests {
             vx_body_m_s: 10.0,
             vy_body_m_s: 0.0,
             yaw_rate_rad_s: 0.0,
+        }
+    }
+
+    /// The tag was what stood before the first colon of a name.
+    #[test]
+    fn the_car_of_another_course_of_events_has_its_probability_beside_it() {
+        let text = r#"
+            case = "courses"
+            struck_car = { mass_kg = 1500 }
+            striking_car = { mass_kg = 1500 }
+            damage = { side = "right", x_m = -1.7 }
+            mark = [{ wheel = "FL", points_m = [[1, 2], [3, 4]] }]
+        "#;
+        let file = TomlFile { path: std::path::Path::new("case.toml"), text };
+        let evidence = Evidence::from_toml(file).unwrap();
+        let cars = Cars::new(&evidence, None, None);
+        let named = |name: &str, chance: Option<&str>| NamedPath {
+            name: name.to_owned(),
+            chance: chance.map(str::to_owned),
+            path: Path { points: vec![point(0.0), point(1.0)], end: PathEnd::Rest },
         };
+        let others = [named("26.3 %: it turns", Some("26.3 %")), named("draw 3: it turns", None)];
+        let scene = reconstruction_scene(&ReconstructionParts {
+            evidence: &evidence,
+            cars: &cars,
+            drawn: &[],
+            followed: None,
+            others: &others,
+            marks: &[],
+            units: UnitSystem::Si,
+            caveats: &Caveats::default(),
+        });
+        let mut tags: Vec<&str> = scene.cars.iter().map(|car| car.tag.as_str()).collect();
+        tags.sort_unstable();
+        assert_eq!(tags, ["26.3 %", "struck"]);
+    }
+
+    #[test]
+    fn a_motion_begins_and_ends_with_its_path() {
         let body = shape_of(&Preset::Reference.parameters()).body;
         for (start_s, end_s) in [(0.0, 1.0), (0.0, 0.97), (0.2, 3.211), (0.0, 0.01)] {
             let points = vec![point(start_s), point((start_s + end_s) / 2.0), point(end_s)];

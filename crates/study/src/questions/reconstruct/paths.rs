@@ -32,6 +32,8 @@ pub struct ReconstructedPaths {
 pub struct NamedPath {
     /// The name; where several courses of events are possible, as [`ReconstructedPaths::course_name`] tells it.
     pub name: String,
+    /// The probability that the name begins with, where it is that of one of several courses of events.
+    pub chance: Option<String>,
     /// The path.
     pub path: Path,
 }
@@ -60,7 +62,9 @@ impl ReconstructedPaths {
             [first, rest @ ..] if !rest.is_empty() => {
                 let of = |mode: &Mode| {
                     let name = Self::course_name(mode, format, term);
-                    followed(answer, name, &mode.members, &mode.quantities)
+                    let (path, marks) = followed(answer, name, &mode.members, &mode.quantities)?;
+                    let chance = Some(course_chance(mode, format));
+                    Some((NamedPath { chance, ..path }, marks))
                 };
                 let (median, marks) = of(first).unzip();
                 let others = rest.iter().filter_map(|mode| Some(of(mode)?.0)).collect();
@@ -78,7 +82,7 @@ impl ReconstructedPaths {
         format: &NumberFormat,
         term: &dyn Fn(&str) -> String,
     ) -> String {
-        format!("{}: {}", format.chance(mode.probability, None), term(&mode.name))
+        format!("{}: {}", course_chance(mode, format), term(&mode.name))
     }
 
     /// What stands above one of several courses of events: its probability with its standard error, and its
@@ -108,6 +112,11 @@ impl ReconstructedPaths {
     }
 }
 
+/// The probability of one of several courses of events, as a legend tells it.
+fn course_chance(mode: &Mode, format: &NumberFormat) -> String {
+    format.chance(mode.probability, None)
+}
+
 /// Paths of some of the particles of these numbers.
 fn drawn(answer: &ReconstructAnswer, members: &[usize]) -> Vec<Path> {
     let z = &answer.particles.z;
@@ -133,7 +142,7 @@ fn followed(
         (marks, motion.path)
     });
     let (marks, path) = motions.pop()?;
-    Some((NamedPath { name: name.into(), path }, marks))
+    Some((NamedPath { name: name.into(), chance: None, path }, marks))
 }
 
 /// The marks that were found beside those of the particle of median speed, or of that of the most probable

@@ -72,6 +72,8 @@ fn several_courses_of_events_come_before_any_median_with_a_badge_and_a_path_each
     assert_eq!(paths.others.len(), report.modes.len() - 1);
     for (path, mode) in paths.median.iter().chain(&paths.others).zip(&report.modes) {
         assert!(path.name.ends_with(&mode.name), "{} {}", path.name, mode.name);
+        let chance = path.chance.as_ref().unwrap();
+        assert_eq!(path.name, format!("{chance}: {}", mode.name));
     }
 }
 
