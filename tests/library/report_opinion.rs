@@ -1,11 +1,14 @@
 //! The opinion at the front of a report: short, with probabilities before medians, what differs between
 //! variants, and who gives it.
 
+use std::path::Path;
+
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Block, Language, Paper, ReportDocument, SectionKind, Table, pdf};
-use impactlab_study::case_file::{CaseFile, Expert};
+use impactlab_study::case_file::{CaseFile, Expert, Variant};
+use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
-use crate::report::{impact_case, pit, report, settings, staged};
+use crate::report::{english, impact_case, pit, report, settings, staged};
 
 fn opinion(document: &ReportDocument) -> &[Block] {
     assert_eq!(document.sections[0].kind, SectionKind::Opinion);
@@ -85,6 +88,26 @@ fn a_reconstruction_has_an_opinion_with_its_materials() {
     let (_, case, document, _) = staged();
     assert!(says(document, "struck car"));
     assert!(says(document, &case.files[0].sha256));
+}
+
+/// Where the figures over all courses of events may be true of none, the opinion had no others.
+#[test]
+fn each_course_of_events_has_its_probability_and_its_speed_in_the_opinion() {
+    let evidence = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let evidence = evidence.join("docs/guide/examples/position_alone.toml");
+    let question = ReconstructRequest {
+        particles: 150,
+        ..ReconstructRequest::new(EvidenceChoice::File(evidence))
+    };
+    let variant = Variant { questions: vec![question.into()], ..Variant::default() };
+    let (document, _) = report(&CaseFile::new("place", variant), &english());
+    let courses = tables(&document)[0];
+    assert!(courses.caption.starts_with("Courses of events"), "{}", courses.caption);
+    assert!(courses.rows.len() > 1, "{:?}", courses.rows);
+    for row in &courses.rows {
+        let is_told = row[1].contains(" ± ") && row[1].contains("; speed of the struck car: ");
+        assert!(is_told, "{row:?}");
+    }
 }
 
 /// Readers by ear get the file that they need: PDF/UA-1, with a title and headers of rows.

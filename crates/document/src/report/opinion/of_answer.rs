@@ -109,9 +109,9 @@ pub(in crate::report) fn opinion_of_reconstruction(
     if !report.has_intervals() {
         sentences.push(words.no_intervals.to_owned());
     }
-    let courses = match report.modes.len() > 1 {
-        true => rows_of(&report.course_table(), |_| true, context),
-        false => Vec::new(),
+    let courses = match (report.modes.len() > 1, figures.first()) {
+        (true, Some([speed, _])) => courses_of(report, speed, context),
+        _ => Vec::new(),
     };
     let hinges = report.hinge_table().map(|table| hinge_sentences(&table, words, context));
     PartOpinion {
@@ -124,6 +124,22 @@ pub(in crate::report) fn opinion_of_reconstruction(
         is_doubtful: false,
         hinges: hinges.unwrap_or_else(|| vec![words.too_few_to_say.to_owned()]),
     }
+}
+
+/// Several courses of events by name: how probable each is, and the speed that is asked for in it, since that
+/// over all of them may be true of none.
+///
+/// - `speed`: what the speed is called.
+fn courses_of(report: &ReconstructReport, speed: &str, context: Context<'_>) -> Vec<[String; 2]> {
+    let table = FactTable { levels: &[], ..report.course_table() };
+    let rows = with_writer(context, |writer| table.to_text(writer).rows);
+    let format = &**context.wording;
+    let told = rows.into_iter().zip(&report.modes).filter_map(|(row, mode)| {
+        let [name, _, _, value] = <[String; 4]>::try_from(row.cells).ok()?;
+        let chance = format.chance(mode.probability, Some(mode.standard_error));
+        Some([name, format!("{chance}; {speed}: {value}")])
+    });
+    told.collect()
 }
 
 /// One motion, and how its end varies with what the data sheet leaves open.

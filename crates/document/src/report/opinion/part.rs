@@ -26,7 +26,8 @@ pub(in crate::report) struct PartOpinion {
     pub question: String,
     /// What came out, in sentences.
     pub answer: String,
-    /// Courses of events with their probabilities; empty where there is one only.
+    /// Courses of events with their probabilities, and with the speed in each where speeds are asked for; empty
+    /// where there is one only.
     pub courses: Vec<[String; 2]>,
     /// The figures that variants are compared by, with their values.
     pub figures: Vec<[String; 2]>,

@@ -134,7 +134,8 @@ const EN: OpinionWords = OpinionWords {
         end; the rest is the force, the contact and the drivers.",
     nothing_drawn: "Nothing was drawn that the answer could be seen to depend on; it holds for the values of section \
         3 as they stand.",
-    several_courses: "More than one course of events is possible; the figures over all of them may be true of none.",
+    several_courses: "More than one course of events is possible, each with a speed of its own below; the figures over all \
+        of them may be true of none.",
     no_intervals: "The particles allow no intervals.",
     too_few_to_say: "The particles do not allow to say what the speeds hinge on.",
     at_medians: "With each input at its median:",
@@ -214,7 +215,8 @@ const DE: OpinionWords = OpinionWords {
         Winkel am Ende; das Übrige sind Kraft, Kontakt und Fahrer.",
     nothing_drawn: "Es wurde nichts gezogen, woran eine Abhängigkeit zu erkennen wäre; die Antwort gilt für die Werte \
         in Abschnitt 3, so wie sie dort stehen.",
-    several_courses: "Mehr als ein Geschehensablauf ist möglich; die Zahlen über alle treffen womöglich auf keinen zu.",
+    several_courses: "Mehr als ein Geschehensablauf ist möglich, jeder mit einer eigenen Geschwindigkeit, siehe unten; \
+        die Zahlen über alle treffen womöglich auf keinen zu.",
     no_intervals: "Die Ziehungen lassen keine Bereiche zu.",
     too_few_to_say: "Die Ziehungen lassen keine Aussage darüber zu, wovon die Geschwindigkeiten abhängen.",
     at_medians: "Mit jeder Eingangsgröße in ihrem Median:",
