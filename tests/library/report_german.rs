@@ -8,6 +8,7 @@ use impactlab_document::report::{Block, Language, Paper, ReportDocument};
 use impactlab_study::case_file::CaseFile;
 
 use crate::report::{report, settings, staged};
+use crate::report_opinion::assert_two_pages;
 
 /// Words of English that are none of German.
 const ENGLISH: [&str; 17] = [
@@ -90,6 +91,8 @@ fn a_german_report_of_the_example_has_no_english_words() {
     let case = CaseFile::parse(&text, &path).expect("a case");
     let (document, _) = report(&case, &settings(Language::De, UnitSystem::Si, Paper::A4));
     assert_eq!(english(&document), Vec::<String>::new());
+    // The signature stood alone on a third page.
+    assert_two_pages(&document, ["BeweisfrageundAntwort", "Anhang", "10ProtokolldesFalls"]);
 }
 
 #[test]

@@ -171,17 +171,20 @@ fn one_table(tables: &[(String, &Table)], are_all: bool, wording: &Wording) -> V
     };
     let rows_title = first.columns.first().map_or("", |column| &column.title);
     let mut blocks = beside(&caption, [rows_title, ""], &columns, MISSING);
-    if !alike.is_empty() {
-        let each: Vec<String> =
-            alike.into_iter().map(|[name, value]| format!("{name}: {value}")).collect();
-        let text = fill(wording.words.alike, &[("values", &each.join("; "))]);
-        blocks.push(Block::paragraph(text));
-    }
+    blocks.extend(told_alike(&alike, wording));
     blocks
 }
 
+/// What every variant says alike, in a sentence; none where there is nothing.
+pub(super) fn told_alike(alike: &[[String; 2]], wording: &Wording) -> Option<Block> {
+    let each = alike.iter().map(|[name, value]| format!("{name}: {value}"));
+    let each = each.collect::<Vec<_>>().join("; ");
+    let told = || Block::paragraph(fill(wording.words.alike, &[("values", &each)]));
+    (!alike.is_empty()).then(told)
+}
+
 /// Takes the rows out that every column has with the same value.
-fn taken_rows_alike(columns: &mut [(String, NamedRows)]) -> NamedRows {
+pub(super) fn taken_rows_alike(columns: &mut [(String, NamedRows)]) -> NamedRows {
     let Some(((_, first), others)) = columns.split_first() else { return NamedRows::new() };
     let is_alike = |row: &&[String; 2]| others.iter().all(|(_, rows)| rows.contains(*row));
     let alike: NamedRows = first.iter().filter(is_alike).cloned().collect();

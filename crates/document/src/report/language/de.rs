@@ -297,9 +297,9 @@ pub(super) const WORDS: Words = Words {
         Kraft über der Zeit am Kontaktpunkt. Integriert wird nach Runge–Kutta mit fester \
         Schrittweite, die für Fahrzeuge mit schnelleren Eigenformen geteilt wird.",
     limits_four_dof: "Nicken, Hub, Reifeneinlauf, Rückstellmomente und Achskinematik fehlen; die Fahrbahn ist \
-        eben; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone, in der es steht. Ein abhebendes Rad oder ein \
-        Wankwinkel über 15° wird gemeldet; ein Überschlag wird nicht simuliert. Wo ein Fahrzeug \
-        für sich allein verfolgt wird, wird ein zweiter Kontakt gemeldet und nicht berechnet.",
+        eben; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone unter ihm. Ein abhebendes Rad oder ein \
+        Wankwinkel über 15° wird gemeldet; ein Überschlag wird nicht simuliert. Wird ein Fahrzeug allein \
+        verfolgt, wird ein zweiter Kontakt gemeldet und nicht berechnet.",
     method_four_dof_alone: "4DOF-Fahrzeugmodell eines einzelnen Fahrzeugs",
     method_four_dof_alone_text: "Das Fahrzeug bewegt sich längs, quer, im Gieren und im Wanken. Die Seitenkraft jedes \
         Reifens sättigt mit dem Schräglaufwinkel und fällt darüber auf die Gleitreibung; die Radlasten verlagern sich \
@@ -328,7 +328,7 @@ pub(super) const WORDS: Words = Words {
         Impulslösung mit ihren gemessenen Fehlern an seine Stelle.",
     limits_force: "Das mitgelieferte hat aus 349 simulierten Stößen gegen die Flanke einer von zwei Limousinen, zu einem Fünftel eines SUV, \
         gelernt, mit Annäherung von 0,5 bis 12 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein. Welche \
-        dieser Karosserien getroffen wurde, ist offen, wenn es nicht angegeben ist. Fahrzeuggröße, Stoßziffer und \
+        dieser Karosserien getroffen wurde, ist ohne Angabe offen. Fahrzeuggröße, Stoßziffer und \
         Reibung zwischen ihnen kennt es nicht.",
     method_response: "Bewegungsnetz",
     method_response_text: "Jeder Schritt der Bewegung ist einer des 4DOF-Modells mit einer begrenzten zusätzlichen \

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::report::Block;
 use crate::report::answer::capitalized;
-use crate::report::beside::{NamedRows, beside};
+use crate::report::beside::{NamedRows, beside, taken_rows_alike, told_alike};
 use crate::report::build::{VariantParts, parts_of};
 use crate::report::method::{Method, of_kinds};
 use crate::report::numbers::{Wording, fill};
@@ -153,7 +153,7 @@ fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
 }
 
 /// The figures of the variants beside each other, with what differs between them and what was written about
-/// them.
+/// them; what all of them say alike stands below.
 fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
     let has_notes = spoken.iter().any(|it| !it.notes.is_empty());
@@ -168,14 +168,21 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         let figures = it.opinions().flat_map(|of| of.figures.clone());
         (it.name.clone(), differs.into_iter().chain(notes).chain(figures).collect())
     };
-    let columns: Vec<(String, NamedRows)> = spoken.iter().enumerate().map(column).collect();
+    let mut columns: Vec<(String, NamedRows)> = spoken.iter().enumerate().map(column).collect();
+    // As in the annex.
+    let alike = match columns.len() {
+        0 | 1 => NamedRows::new(),
+        _ => taken_rows_alike(&mut columns),
+    };
     // What a simulation varies is less than what a forecast does not know.
     let is_simulation = |of: &PartOpinion| of.rank == Rank::Simulation;
     let title = match spoken.iter().flat_map(Spoken::opinions).all(is_simulation) {
         true => words.figures_of_simulation,
         false => words.figures,
     };
-    beside(title, [wording.words.quantity, wording.words.value], &columns, NONE)
+    let mut blocks = beside(title, [wording.words.quantity, wording.words.value], &columns, NONE);
+    blocks.extend(told_alike(&alike, wording));
+    blocks
 }
 
 /// How often such intervals held, each table once, and what the known error is.
@@ -328,6 +335,37 @@ mod tests {
         assert!(told.contains("a (1)") && told.contains("a (2)"), "{told}");
         let told = format!("{:?}", figures(&spoken, &wording));
         assert!(told.contains("1 m") && told.contains("2 m"), "{told}");
+    }
+
+    /// “agree: each lies in the 90 % intervals of the other” stood three times in one row.
+    #[test]
+    fn a_figure_that_is_the_same_in_all_variants_is_told_once() {
+        let variant = |name: &str, path: &str| {
+            let row = |name: &str, value: &str| [name.to_owned(), value.to_owned()];
+            let opinion = PartOpinion {
+                rank: Rank::Forecast,
+                question: "Where does it go?".to_owned(),
+                answer: path.to_owned(),
+                courses: Vec::new(),
+                figures: vec![row("distance", path), row("the methods", "agree")],
+                held: None,
+                is_doubtful: false,
+                hinges: Vec::new(),
+            };
+            let part = Part { opinion: Some(opinion), ..Part::default() };
+            VariantParts { name: name.to_owned(), notes: String::new(), answers: vec![Ok(part)] }
+        };
+        let wording = Wording::english(UnitSystem::Si);
+        let told = |variants: &[VariantParts]| figures(&spoken(variants), &wording);
+        let both = told(&[variant("a", "1 m"), variant("b", "2 m")]);
+        let [Block::Table(table), text] = &both[..] else { panic!("{both:?}") };
+        assert!(table.rows.iter().all(|row| row[0] != "the methods"), "{table:?}");
+        let once = "The same in each of these variants: the methods: agree.";
+        assert_eq!(*text, Block::paragraph(once));
+        // One variant has them all in its table.
+        let one = told(&[variant("a", "1 m")]);
+        let [Block::Table(table)] = &one[..] else { panic!("{one:?}") };
+        assert_eq!(table.rows, [["distance", "1 m"], ["the methods", "agree"]]);
     }
 
     /// What the opinion says of how often intervals of an answer held.

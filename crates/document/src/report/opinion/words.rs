@@ -187,7 +187,7 @@ const DE: OpinionWords = OpinionWords {
     hinges: "Wovon die Antwort abhängt",
     warnings: "Warnungen",
     no_warnings: "Das Programm warnt vor nichts.",
-    warnings_told: "Was das bedeutet und was zu tun ist, steht in Abschnitt 6.",
+    warnings_told: "Bedeutung und Abhilfe: siehe Abschnitt 6.",
     not_considered: "Was nicht berücksichtigt wurde",
     who: "Sachverständiger, Auftrag und Anknüpfungstatsachen",
     expert: "Sachverständiger: {text}",
@@ -211,8 +211,8 @@ const DE: OpinionWords = OpinionWords {
     at_rest: "{time} nach dem ersten Kontakt steht es still.",
     still_moves: "{time} nach dem ersten Kontakt bewegt es sich noch, im Mittel mit {speed}.",
     end_hinges: "Von den Schätzwerten für Fahrzeug und Fahrbahn bestimmen das Ende vor allem: {hinges}.",
-    no_hinge: "Kein einzelner Schätzwert für Fahrzeug oder Fahrbahn bestimmt 10 % oder mehr der Varianz von Ort oder \
-        Winkel am Ende; das Übrige sind Kraft, Kontakt und Fahrer.",
+    no_hinge: "Kein Schätzwert für Fahrzeug oder Fahrbahn bestimmt 10 % oder mehr der Varianz von Ort oder Winkel \
+        am Ende; das Übrige sind Kraft, Kontakt und Fahrer.",
     nothing_drawn: "Es wurde nichts gezogen, woran eine Abhängigkeit zu erkennen wäre; die Antwort gilt für die Werte \
         in Abschnitt 3, so wie sie dort stehen.",
     several_courses: "Mehr als ein Geschehensablauf ist möglich, jeder mit einer eigenen Geschwindigkeit, siehe unten; \
