@@ -189,7 +189,7 @@ impl CaveatKind {
             Self::EvidenceUnexplained => "Spur nicht erklärt",
             Self::FewParticles => "wenige Partikel",
             Self::FewDraws => "wenige Ziehungen",
-            Self::SeveralCourses => "mehrere Abläufe",
+            Self::SeveralCourses => "mehrere Geschehensabläufe",
             Self::DriverOpen => "Fahrer offen",
             Self::HardlyValidated => "nicht an realen Fällen validiert",
             Self::NoInterval => "ohne Bereich",

@@ -262,7 +262,7 @@ terms! {
     Region90: "area that holds the position with 90 %", "Fläche, in der die Lage mit 90 % liegt";
     // Both vehicles through all contacts.
     StruckCourses: "What becomes of the struck vehicle", "Was aus dem gestoßenen Fahrzeug wird";
-    Course: "course of events", "Verlauf";
+    Course: "course of events", "Geschehensablauf";
     Wheel: "wheel", "Rad";
     EvidenceItem: "item", "Merkmal";
     WithoutPart: "without", "ohne";
@@ -389,7 +389,7 @@ terms! {
     Particles: "particles", "Partikel";
     EffectiveSamples: "equivalent independent draws", "effektiver Stichprobenumfang";
     Courses: "Courses of events that the evidence leaves possible",
-        "Abläufe, die nach den Spuren möglich bleiben";
+        "Geschehensabläufe, die nach den Spuren möglich bleiben";
     IfThis: "If this happened", "Wenn es so war";
     StandardError: "standard error", "Standardfehler", "By the number of particles";
     StruckCar: "struck car", "gestoßenes Fzg.", "Its speed before the impact";

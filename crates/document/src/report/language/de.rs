@@ -185,13 +185,13 @@ pub(super) const WORDS: Words = Words {
         Anzahl. „≤ 1“ beschränkt nichts: kein Merkmal des Teils überrascht, was nicht beweist, dass der Teil richtig \
         ist. Ein Teil, der das Ergebnis mit sich zieht, wird von einem Ergebnis erklärt, das ihm folgt; hier wird er \
         selbst nicht gefragt.",
-    several_courses: "Mehr als ein Ablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
+    several_courses: "Mehr als ein Geschehensablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
         stehenden über alle können für keinen davon zutreffen.",
     hinges_text: "Eine Ausgleichsgerade durch die Partikel sagt, um wie viel sich eine Geschwindigkeit im Mittel \
         ändert, wenn eine Größe um so viel größer ist, unter Berücksichtigung der Spuren; ± ist der \
         Standardfehler der Geraden. Der Reibbeiwert der Fahrbahn steht immer dort, andere Größen, wo die \
         Gerade mehr als Zufall ist.",
-    modes_text: "Der Standardfehler ist der aus der Zahl der Partikel. Abläufe unter 1 % fehlen.",
+    modes_text: "Der Standardfehler ist der aus der Zahl der Partikel. Geschehensabläufe unter 1 % fehlen.",
     no_evidence: "Keine Frage dieses Falls beruht auf vorgefundenen Spuren: es gibt nichts anzupassen.",
     mark_value: "{n} Punkte von {first} bis {last}, je ± {sigma}",
     marks_computed_text: "Ein Rad zeichnet, wo es blockiert ist oder um mehr als {slip} seitlich rutscht, bei mehr \
@@ -256,10 +256,10 @@ pub(super) const WORDS: Words = Words {
     remedy_wheel_lift: "Die Bewegung danach als Näherung ansehen: abgehobene Räder übertragen keine Kraft.",
     remedy_roll_limit: "Die Bewegung danach nicht verwenden: ein Überschlag wird nicht simuliert.",
     remedy_not_at_rest: "Bis zum Stillstand oder mit längerer Dauer fragen.",
-    remedy_evidence_unexplained: "Diese Spur und ihre Standardabweichung prüfen; einen anderen Ablauf erwägen.",
+    remedy_evidence_unexplained: "Diese Spur und ihre Standardabweichung prüfen; einen anderen Geschehensablauf erwägen.",
     remedy_few_particles: "Mit mehr Partikeln erneut fragen.",
     remedy_few_draws: "Mit mehr Ziehungen erneut fragen.",
-    remedy_several_courses: "Die Werte jedes Ablaufs für sich verwenden; Spuren suchen, die zwischen ihnen entscheiden.",
+    remedy_several_courses: "Die Werte jedes Geschehensablaufs für sich verwenden; Spuren suchen, die zwischen ihnen entscheiden.",
     remedy_driver_open: "Angeben, ob der Fahrer bremst, lenkt oder rollen lässt, oder die Antwort für jeden dieser Fälle zeigen.",
     remedy_hardly_validated: "Das Intervall nur mit diesem Vorbehalt angeben.",
     remedy_no_interval: "Die Standardabweichung jeder Eingabe angeben.",
@@ -306,7 +306,7 @@ pub(super) const WORDS: Words = Words {
         mit den Beschleunigungen; Räder rollen frei, drehen gegen eine Bremse oder sind blockiert. Integriert wird \
         nach Runge–Kutta mit fester Schrittweite, die für Fahrzeuge mit schnelleren Eigenformen geteilt wird.",
     limits_four_dof_alone: "Nicken, Hub, Reifeneinlauf, Rückstellmomente und Achskinematik fehlen; die Fahrbahn hat \
-        eine Neigung; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone, in der es steht. Ein Überschlag wird \
+        überall dieselbe Neigung; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone, in der es steht. Ein Überschlag wird \
         nicht simuliert.",
     method_contact: "Kontakt zweier Umrisse",
     method_contact_text: "Beide Fahrzeuge werden gemeinsam verfolgt. Ihre Umrisse, Rechtecke mit gerundeten Ecken, sind in \

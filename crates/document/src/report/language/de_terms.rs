@@ -512,7 +512,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("cases that it was trained on", "Fälle, mit denen es trainiert wurde"),
     ("vehicles drawn from the data sheet", "aus dem Datenblatt gezogene Fahrzeuge"),
     ("roll angle", "Wankwinkel"),
-    ("courses of events", "Abläufe"),
+    ("courses of events", "Geschehensabläufe"),
     ("temperature", "Temperatur"),
     ("effective sample size", "wirksame Stichprobengröße"),
     (

@@ -25,8 +25,8 @@ pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
         let text = Phrase::new(
             "{0} courses of events are possible ({1}): a median or an interval over all of them may be true of \
              none; use those of each course",
-            "{0} Abläufe sind möglich ({1}): Ein Median oder ein Intervall über alle Abläufe trifft unter \
-             Umständen auf keinen zu. Maßgeblich sind die Werte jedes einzelnen Ablaufs",
+            "{0} Geschehensabläufe sind möglich ({1}): Ein Median oder ein Intervall über alle trifft unter \
+             Umständen auf keinen zu. Maßgeblich sind die Werte jedes einzelnen",
         )
         .with(PhraseValue::Name(modes.len().to_string()))
         .with(PhraseValue::phrase(Phrase::joined(modes.iter().map(course), "; ")));
@@ -201,7 +201,7 @@ pub(super) fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
                 "{0}: {3} {1}, expected {2}: items of the evidence contradict each other, or the course \
                  of events is another one; do not rely on the answer",
                 "{0}: {3} {1}, erwartet {2}. Anknüpfungstatsachen widersprechen einander, oder der \
-                 Ablauf war ein anderer; die Antwort ist nicht verwertbar",
+                 Geschehensablauf war ein anderer; die Antwort ist nicht verwertbar",
             )
             .with(PhraseValue::Term(item.evidence.clone()))
             .with(of_evidence(item.found, item.unit))
