@@ -76,7 +76,7 @@ impl RestrictionLine {
                 (false, _) => format!("{}: ", capitalised(kind)),
             };
             let n_others = restrictions.len() - 1 + n_assumed;
-            let (severity, text) = (first.severity, first.statement());
+            let (severity, text) = (first.severity, first.statement_in(language));
             return Some(Self { severity, label, text, n_others, language });
         }
         let summary = caveats.summaries().into_iter().next()?;
@@ -174,6 +174,17 @@ mod tests {
         assert_eq!(shorter, Some("a study; no speed of 4.5 m/s is safe."));
         assert_eq!(shorter.and_then(without_last_part), Some("a study;"));
         assert_eq!(without_last_part("a study;"), None);
+    }
+
+    /// “Fahrer offen: striking vehicle: Zum Verhalten …” stood below the figures of a German report.
+    #[test]
+    fn what_a_restriction_is_about_is_in_the_language_of_the_figure() {
+        let text = "Zum Verhalten des Fahrers liegt keine Angabe vor";
+        let open = Caveat::new(CaveatKind::DriverOpen, text);
+        let open = Caveat { subject: Some(CaveatSubject::Striking), ..open };
+        let german = NumberFormat { language: Language::De, ..NumberFormat::default() };
+        let line = RestrictionLine::new(&Caveats::from(vec![open]), &german).unwrap();
+        assert_eq!(line.text, format!("stoßendes Fahrzeug: {text}"));
     }
 
     #[test]

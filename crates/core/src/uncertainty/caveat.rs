@@ -197,9 +197,14 @@ impl Caveat {
     /// What stands behind the label of its kind: the sentence, and for an assumption what was assumed
     /// with its value. Many sentences begin with the label, which is left out.
     pub fn statement(&self) -> String {
-        let begin = format!("{}: ", self.kind.label());
+        self.statement_in(Language::En)
+    }
+
+    /// The same of a caveat whose text is in a language.
+    pub fn statement_in(&self, language: Language) -> String {
+        let begin = format!("{}: ", self.kind.label_in(language));
         match self.subject {
-            Some(subject) => format!("{}: {}", subject.label(), self.text),
+            Some(subject) => format!("{}: {}", subject.label_in(language), self.text),
             None => self.text.strip_prefix(&begin).unwrap_or(&self.text).to_owned(),
         }
     }
