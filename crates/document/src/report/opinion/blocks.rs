@@ -174,15 +174,22 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         0 | 1 => NamedRows::new(),
         _ => taken_rows_alike(&mut columns),
     };
-    // What a simulation varies is less than what a forecast does not know.
-    let is_simulation = |of: &PartOpinion| of.rank == Rank::Simulation;
-    let title = match spoken.iter().flat_map(Spoken::opinions).all(is_simulation) {
-        true => words.figures_of_simulation,
-        false => words.figures,
+    // What a simulation varies is less than what a forecast does not know, and an impact varies nothing.
+    let title = if are_all(spoken, Rank::Simulation) {
+        words.figures_of_simulation
+    } else if are_all(spoken, Rank::Impact) {
+        words.figures_of_impact
+    } else {
+        words.figures
     };
     let mut blocks = beside(title, [wording.words.quantity, wording.words.value], &columns, NONE);
     blocks.extend(told_alike(&alike, wording));
     blocks
+}
+
+/// Whether all answers are of one rank.
+fn are_all(spoken: &[Spoken<'_>], rank: Rank) -> bool {
+    spoken.iter().flat_map(Spoken::opinions).all(|of| of.rank == rank)
 }
 
 /// How often such intervals held, each table once, and what the known error is.
@@ -199,7 +206,10 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let is_doubtful = |it: &&Spoken<'_>| it.opinions().any(|of| of.is_doubtful);
     let doubtful: Vec<&str> = spoken.iter().filter(is_doubtful).map(|it| &*it.name).collect();
     if !is_counted && doubtful.len() < spoken.len() {
-        blocks.push(Block::paragraph(words.not_counted));
+        blocks.push(Block::paragraph(match are_all(spoken, Rank::Impact) {
+            true => wording.words.no_intervals,
+            false => words.not_counted,
+        }));
     }
     blocks.extend(match doubtful.len() {
         0 => None,
@@ -423,6 +433,29 @@ mod tests {
         let told = told_of_held(Rank::Simulation, None, &[Method::Impact, Method::FourDof]);
         assert!(told.contains("it was not counted"), "{told}");
         assert!(!told.contains("were tried") && !told.contains("confidence"), "{told}");
+    }
+
+    /// “In brackets the interval that holds with a probability of 90 %” stood above components along x and y.
+    #[test]
+    fn figures_of_an_impact_have_no_intervals_and_say_so() {
+        let opinion = PartOpinion {
+            rank: Rank::Impact,
+            question: "Which impulse?".to_owned(),
+            answer: "2 kN s".to_owned(),
+            courses: Vec::new(),
+            figures: vec![["impulse".to_owned(), "2 kN s (x 1, y 1.7)".to_owned()]],
+            held: None,
+            is_doubtful: false,
+            hinges: Vec::new(),
+        };
+        let part = Part { opinion: Some(opinion), ..Part::default() };
+        let (name, notes) = ("a".to_owned(), String::new());
+        let variants = [VariantParts { name, notes, answers: vec![Ok(part)] }];
+        let (spoken, wording) = (spoken(&variants), Wording::english(UnitSystem::Si));
+        let told = format!("{:?}", figures(&spoken, &wording));
+        assert!(told.contains("no intervals") && !told.contains("90 %"), "{told}");
+        let told = format!("{:?}", held(&spoken, &wording));
+        assert!(told.contains("have no interval") && !told.contains("not counted"), "{told}");
     }
 
     /// Section 7 alone said that the pairs were computed without the force network.

@@ -181,7 +181,7 @@ pub(in crate::report) fn opinion_of_force(
     PartOpinion {
         rank: Rank::Force,
         question: question.to_owned(),
-        answer: told(&figures, figures.len()),
+        answer: capitalized(&told(&figures, figures.len())),
         courses: Vec::new(),
         figures,
         held: report.held_table().map(|table| facts_table(&table, context)),
@@ -220,7 +220,7 @@ pub(in crate::report) fn opinion_of_impact(
     PartOpinion {
         rank: Rank::Impact,
         question: question.to_owned(),
-        answer: told(&figures, figures.len()),
+        answer: capitalized(&told(&figures, figures.len())),
         courses: Vec::new(),
         figures,
         held: None,

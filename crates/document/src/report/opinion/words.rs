@@ -12,6 +12,7 @@ pub(super) struct OpinionWords {
     pub probability: &'static str,
     pub figures: &'static str,
     pub figures_of_simulation: &'static str,
+    pub figures_of_impact: &'static str,
     pub differs: &'static str,
     pub first_variant: &'static str,
     pub asked_alike: &'static str,
@@ -79,8 +80,9 @@ const EN: OpinionWords = OpinionWords {
     course: "What becomes of the struck vehicle",
     probability: "Probability",
     figures: "Figures; in brackets the interval that holds with a probability of 90 %",
-    figures_of_simulation: "Figures; in brackets the interval in which nine of ten drawn vehicles lie, where only what \
-        data sheets leave open is varied",
+    figures_of_simulation: "Figures; in brackets components, and over the drawn vehicles the interval in which nine of \
+        ten of them lie, where only what data sheets leave open is varied",
+    figures_of_impact: "Figures, which have no intervals; in brackets components",
     differs: "what differs",
     first_variant: "the variant that the others are compared with",
     asked_alike: "asked as the first variant",
@@ -159,8 +161,9 @@ const DE: OpinionWords = OpinionWords {
     course: "Verbleib des gestoßenen Fahrzeugs",
     probability: "Wahrscheinlichkeit",
     figures: "Ergebnisse; in Klammern der Bereich, der mit einer Wahrscheinlichkeit von 90 % zutrifft",
-    figures_of_simulation: "Ergebnisse; in Klammern der Bereich, in dem neun von zehn gezogenen Fahrzeugen liegen; \
-        variiert wird nur, was Datenblätter offen lassen",
+    figures_of_simulation: "Ergebnisse; in Klammern Komponenten, über die gezogenen Fahrzeuge der Bereich, in dem neun von \
+        zehn liegen; variiert wird nur, was Datenblätter offen lassen",
+    figures_of_impact: "Ergebnisse, die kein Intervall haben; in Klammern Komponenten",
     differs: "Unterschied",
     first_variant: "Variante, mit der die anderen verglichen werden",
     asked_alike: "gefragt wie die erste Variante",
