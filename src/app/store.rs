@@ -184,9 +184,14 @@ impl Store {
             return None;
         }
         self.job = None;
-        self.is_failing = !matches!(update, Update::Finished(Ok(())));
+        let was_failing =
+            std::mem::replace(&mut self.is_failing, !matches!(update, Update::Finished(Ok(()))));
+        if self.is_failing {
+            // A disk that is full for a while: what is not on it is written again.
+            self.written.clear();
+        }
         match update {
-            Update::Finished(Err(error)) => Some(error_chain(&error)),
+            Update::Finished(Err(error)) if !was_failing => Some(error_chain(&error)),
             _ => None,
         }
     }

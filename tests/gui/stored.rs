@@ -183,6 +183,13 @@ fn a_case_that_could_not_be_stored_is_asked_about() {
     step_until(&mut harness, "the failure", |state| !state.session.keeps_state);
     let told = state(&harness).reasons_to_stay(&Leaving::Quit);
     assert!(told.iter().any(|why| why.contains("keeps nothing for the next start")), "{told:?}");
+
+    // Nothing is changed once more, and what was not written is written as soon as that is possible.
+    fs::create_dir(folder.path().join("stored")).expect("a folder");
+    step_until(&mut harness, "the second attempt", |state| state.session.keeps_state);
+    let text = fs::read_to_string(&state_file).expect("a state");
+    assert!(text.contains("\"duration_s\":1.25"), "{text}");
+    assert_eq!(messages(&harness).matches("state.json").count(), 1, "said once");
 }
 
 #[test]
