@@ -270,6 +270,13 @@ fn a_case_outside_says_by_how_much_and_what_can_be_done() {
     assert!(says(&harness, "180.0 km/h, 36.00 km/h above the atlas"));
     assert!(says(&harness, "(36.00 km/h above)"), "below the map");
     assert!(says(&harness, "compute an atlas whose plan reaches it"));
+    // The map without the case ended at 40 m/s, the one beside it at the case.
+    let reach = |map: &ShownMap| {
+        map.figure.included.iter().map(|[speed, _]| *speed).fold(f64::MIN, f64::max)
+    };
+    let reaches: Vec<f64> = state(&harness).session.atlas.maps().iter().map(reach).collect();
+    let [without, with] = reaches[..] else { panic!("{reaches:?}") };
+    assert!((without - 180.0).abs() < 1e-9 && without == with, "{reaches:?}");
     save(&mut harness, "atlas-outside.png");
     change(&mut harness, [15.0, 16.0], true);
     assert!(!says(&harness, " above the atlas"));

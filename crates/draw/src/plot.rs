@@ -52,6 +52,8 @@ pub struct FigureOptions {
     pub id: String,
     /// Group of plots that share the cursor and the horizontal axis.
     pub link: Option<Id>,
+    /// Whether the plots of the group share the vertical axis, too.
+    pub links_y: bool,
     /// Position of the cursor along x, in the unit of the axis; not drawn beyond the curves, whose axis it
     /// would stretch.
     pub cursor_x: Option<f64>,
@@ -82,6 +84,7 @@ impl Default for FigureOptions {
         Self {
             id,
             link,
+            links_y: false,
             cursor_x,
             span,
             height,
@@ -145,22 +148,14 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         plot = plot.height(height);
     }
     if let Some(group) = options.link {
-        plot = plot
-            .link_axis(group, Vec2b::new(true, false))
-            .link_cursor(group, Vec2b::new(true, false));
+        let axes = Vec2b::new(true, options.links_y);
+        plot = plot.link_axis(group, axes).link_cursor(group, axes);
     }
     let resets = options.reset && ui.ctx().current_pass_index() == 0;
     if resets {
         plot = plot.reset();
     }
-    for element in &figure.elements {
-        // egui_plot includes only the origins of arrows when it fits the view.
-        if let FigureElement::Arrow(series) = element {
-            for [x, y] in &series.points {
-                plot = plot.include_x(*x).include_y(*y);
-            }
-        }
-    }
+    plot = including_places(plot, figure);
     let dark = ui.visuals().dark_mode;
     let response = plot.show(ui, |plot_ui| {
         if let Some([low, high]) = options.view {
@@ -207,6 +202,19 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         view: [transform.bounds().min(), transform.bounds().max()],
         x_per_point: transform.dvalue_dpos()[0].abs(),
     }
+}
+
+/// Has the view reach what egui_plot does not find in the elements: the tips of arrows, of which it includes
+/// only the origins, and the places of figures with which this one is compared.
+fn including_places<'a>(mut plot: Plot<'a>, figure: &Figure) -> Plot<'a> {
+    let arrows = figure.elements.iter().filter_map(|element| match element {
+        FigureElement::Arrow(series) => Some(&series.points),
+        _ => None,
+    });
+    for [x, y] in arrows.flatten().chain(&figure.included) {
+        plot = plot.include_x(*x).include_y(*y);
+    }
+    plot
 }
 
 /// Thin lines below the elements.
@@ -367,6 +375,28 @@ mod tests {
         assert!(reaches(&figure, 2.0));
         figure.elements.clear();
         assert!(reaches(&figure, 2.0));
+    }
+
+    #[test]
+    fn figures_that_include_the_same_places_have_the_same_axes() {
+        let context = egui::Context::default();
+        let view = |end: f64| {
+            let axis = || Axis::shown("axis", Quantity::Time, UnitSystem::Si);
+            let curve = FigureElement::line("F", Role::Resultant, vec![[0.0, 0.0], [end, end]]);
+            let figure = Figure::new(format!("to {end}"), [axis(), axis()], vec![curve]);
+            let figure = Figure { included: vec![[0.0, -1.0], [3.0, 3.0]], ..figure };
+            let screen = Rect::from_min_size(Pos2::ZERO, Vec2::new(500.0, 300.0));
+            let mut view = [[0.0; 2]; 2];
+            for _ in 0..3 {
+                let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
+                let _ = context.run_ui(input, |ui| {
+                    view = figure_ui(ui, &figure, &FigureOptions::default()).view;
+                });
+            }
+            view
+        };
+        assert_eq!(view(1.0), view(3.0));
+        assert!(view(1.0)[1][0] >= 3.0 && view(1.0)[0][1] <= -1.0, "{:?}", view(1.0));
     }
 
     /// Ends of the ticks and beginning of the label of the horizontal axis in the frame that is drawn.

@@ -79,7 +79,8 @@ impl CasePoint {
 }
 
 impl MapsOf {
-    /// Makes the maps. Those side by side have the same scale of colours.
+    /// Makes the maps. Those side by side have the same scale of colours and the same axes, also where the case
+    /// lies outside of one of them.
     pub(super) fn make(&self, atlas: &Atlas) -> Vec<ShownMap> {
         let mut maps: Vec<ShownMap> = self.maps.iter().map(|map| self.one(atlas, map)).collect();
         let scales = maps.iter_mut().flat_map(ShownMap::scales);
@@ -87,6 +88,8 @@ impl MapsOf {
             [low.min(scale[0]), high.max(scale[1])]
         });
         maps.iter_mut().flat_map(ShownMap::scales).for_each(|scale| *scale = whole);
+        let reach: Vec<[f64; 2]> = maps.iter().flat_map(ShownMap::reach).collect();
+        maps.iter_mut().for_each(|map| map.figure.included.clone_from(&reach));
         maps
     }
 
@@ -192,6 +195,16 @@ impl ShownMap {
             FigureElement::CellMap(map) => Some(&mut map.scale),
             _ => None,
         })
+    }
+
+    /// The places that its axes reach: the corners of the cells, and the case where this map has it.
+    fn reach(&self) -> Vec<[f64; 2]> {
+        let places = self.figure.elements.iter().flat_map(|element| match element {
+            FigureElement::Points(series) => series.points.clone(),
+            FigureElement::CellMap(map) => map.cells().flat_map(|(ends, ..)| ends).collect(),
+            _ => Vec::new(),
+        });
+        places.collect()
     }
 
     /// The inputs that the map holds in another bin than that of a case.

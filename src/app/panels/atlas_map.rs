@@ -1,6 +1,6 @@
 //! The “Map” pane: an outcome over two axes of an atlas, with the case at hand in it.
 
-use egui::{Label, RichText, ScrollArea, Ui};
+use egui::{Id, Label, RichText, ScrollArea, Ui};
 
 use crate::app::atlas::{AtlasCommand, AtlasSession, LEGEND, ShownMap};
 use crate::app::command::Command;
@@ -38,6 +38,8 @@ pub fn atlas_map_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         for (idx, (ui, map)) in columns.iter_mut().zip(maps).enumerate() {
             let options = FigureOptions {
                 id: format!("atlas map {idx}"),
+                link: Some(Id::unique("atlas maps")),
+                links_y: true,
                 height: Some(height),
                 reset: session.fit_plots,
                 pans: false,

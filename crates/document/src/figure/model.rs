@@ -20,6 +20,9 @@ pub struct Figure {
     pub log_y: bool,
     /// Elements in drawing order, from back to front.
     pub elements: Vec<FigureElement>,
+    /// Places that the axes reach beside the elements, in their units: those of figures with which this one is
+    /// compared.
+    pub included: Vec<[f64; 2]>,
     /// What restricts the answer that is shown and what it rests on: in every picture and every table
     /// of the figure.
     pub caveats: Caveats,
@@ -31,8 +34,8 @@ impl Figure {
     /// A figure with linear axes, of nothing that is restricted.
     pub fn new(title: impl Into<String>, [x, y]: [Axis; 2], elements: Vec<FigureElement>) -> Self {
         let (equal_aspect, log_y, caveats) = (false, false, Caveats::default());
-        let (title, language) = (title.into(), Language::default());
-        Self { title, x, y, equal_aspect, log_y, elements, caveats, language }
+        let (title, included, language) = (title.into(), Vec::new(), Language::default());
+        Self { title, x, y, equal_aspect, log_y, elements, included, caveats, language }
     }
 
     /// The same as a plan from above, whose axes have the same scale.
