@@ -7,7 +7,7 @@
 use egui::{Color32, Visuals};
 
 use impactlab_core::data::Severity;
-use impactlab_document::figure::Role;
+use impactlab_document::figure::{Dashes, Role, variant_colors, variant_dashes};
 
 /// Width of a plotted line, points.
 pub const LINE_WIDTH: f32 = 1.8;
@@ -15,37 +15,6 @@ pub const LINE_WIDTH: f32 = 1.8;
 pub const THIN_LINE_WIDTH: f32 = 1.0;
 /// Opacity of the fill of an outline, 0 to 1.
 pub const FILL_OPACITY: f32 = 0.18;
-
-/// Colours of the variants beside the one in the forms and of further courses of events, for a light and a
-/// dark ground. They and the colour of the simulation are told apart by everybody: where two hues are the
-/// same to an eye, their lightness differs. A test measures it.
-const VARIANTS: [([u8; 3], [u8; 3]); 8] = [
-    ([100, 60, 0], [255, 210, 50]),
-    ([20, 40, 160], [140, 120, 255]),
-    ([70, 20, 100], [160, 120, 150]),
-    ([100, 0, 30], [0, 255, 180]),
-    ([210, 100, 150], [220, 250, 130]),
-    ([210, 40, 80], [180, 250, 255]),
-    ([150, 20, 90], [200, 120, 110]),
-    ([140, 140, 30], [230, 100, 60]),
-];
-
-/// How a dashed line is dashed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Dashes {
-    /// Length of a dash, points.
-    pub length: f32,
-    /// From where to where the dashes of its sample in a legend are, as shares of its width on both sides of
-    /// the middle.
-    pub sample: &'static [[f32; 2]],
-}
-
-/// Dashes of a line, which tell variants apart beside their colours.
-const DASHES: [Dashes; 3] = [
-    Dashes { length: 10.0, sample: &[[-0.5, -0.1], [0.1, 0.5]] },
-    Dashes { length: 5.0, sample: &[[-0.5, -0.28], [-0.11, 0.11], [0.28, 0.5]] },
-    Dashes { length: 18.0, sample: &[[-0.5, 0.22], [0.4, 0.5]] },
-];
 
 /// Colour of a role.
 ///
@@ -59,7 +28,10 @@ pub fn color(role: Role, dark: bool) -> Color32 {
         Role::Resultant => ([60, 60, 60], [225, 225, 225]),
         Role::Pulse => ([170, 80, 140], [220, 145, 190]),
         Role::RightWheel => ([110, 70, 170], [170, 140, 230]),
-        Role::Variant(idx) => VARIANTS[idx % VARIANTS.len()],
+        Role::Variant(idx) => {
+            let [on_light, on_dark] = variant_colors(idx);
+            (on_light, on_dark)
+        }
         Role::Muted => ([150, 150, 150], [120, 120, 120]),
     };
     let [r, g, b] = if dark { dark_ground } else { light_ground };
@@ -69,8 +41,8 @@ pub fn color(role: Role, dark: bool) -> Color32 {
 /// How a dashed line of a role is dashed.
 pub fn dashes(role: Role) -> Dashes {
     match role {
-        Role::Variant(idx) => DASHES[idx % DASHES.len()],
-        _ => DASHES[0],
+        Role::Variant(idx) => variant_dashes(idx),
+        _ => Dashes::default(),
     }
 }
 
@@ -112,6 +84,7 @@ pub fn severity_color(severity: Severity, dark: bool) -> Color32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_document::figure::N_VARIANT_COLORS;
 
     /// Least difference of two colours in CIELAB, ΔE of 1976: a person sees one of 2 beside each other, and
     /// has to know a thin line again.
@@ -184,7 +157,7 @@ mod tests {
     /// Three colours came again from the fourth variant on.
     #[test]
     fn variants_and_the_simulation_are_told_apart_by_every_eye() {
-        let roles: Vec<Role> = (0..VARIANTS.len()).map(Role::Variant).collect();
+        let roles: Vec<Role> = (0..N_VARIANT_COLORS).map(Role::Variant).collect();
         for dark in [false, true] {
             let colors: Vec<Color32> =
                 roles.iter().chain([&Role::Simulation]).map(|role| color(*role, dark)).collect();
@@ -199,15 +172,6 @@ mod tests {
                     }
                 }
             }
-        }
-    }
-
-    #[test]
-    fn a_colour_that_comes_again_is_dashed_otherwise() {
-        let look = |idx| (color(Role::Variant(idx), false), dashes(Role::Variant(idx)));
-        for idx in 0..3 * VARIANTS.len() {
-            let is_same = |other: &usize| look(*other) == look(idx);
-            assert_eq!((0..idx).find(is_same), None, "{idx}");
         }
     }
 }

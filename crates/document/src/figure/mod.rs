@@ -20,6 +20,7 @@ mod replay;
 mod scene;
 mod statistics;
 mod training;
+mod variant_look;
 
 pub use analysis::{
     analysis_force_figure, analysis_motion_figure, analysis_readout, analysis_scene_figure,
@@ -53,3 +54,4 @@ pub use replay::{ReplayCurve, replay_curve_figure, replay_path_figure};
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};
 pub use training::{LossCurve, balance_figure, loss_figure};
+pub use variant_look::{Dashes, N_VARIANT_COLORS, variant_colors, variant_dashes};

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::figure::{Dashes, variant_dashes};
 use crate::scene::{CarMotion, CarShape, CarState, SceneGround};
 use impactlab_core::collision::Pose;
 use impactlab_core::uncertainty::Caveats;
@@ -35,6 +36,22 @@ pub enum SceneRole {
     TireMark,
     /// Outlines that are dented by construction.
     Crush,
+}
+
+impl SceneRole {
+    /// Whether the path of a car of this role is dashed: that of a recording or of a variant beside the
+    /// simulation.
+    pub fn is_dashed(self) -> bool {
+        matches!(self, Self::Recorded | Self::Variant(_))
+    }
+
+    /// How its lines are dashed where they are, as in a plan.
+    pub fn dashes(self) -> Dashes {
+        match self {
+            Self::Variant(idx) => variant_dashes(idx),
+            _ => Dashes::default(),
+        }
+    }
 }
 
 /// How a car is drawn.
@@ -77,7 +94,7 @@ pub struct ScenePath {
     pub name: String,
     /// Meaning of its colour.
     pub role: SceneRole,
-    /// Whether it is dashed: a recording beside a simulation.
+    /// Whether it is dashed: a recording or a variant beside a simulation.
     pub is_dashed: bool,
     /// Whether ticks show the heading along it.
     pub has_ticks: bool,

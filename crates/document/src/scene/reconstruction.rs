@@ -251,6 +251,7 @@ mod tests {
         let mut tags: Vec<&str> = scene.cars.iter().map(|car| car.tag.as_str()).collect();
         tags.sort_unstable();
         assert_eq!(tags, ["26.3 %", "struck"]);
+        assert!(scene.paths.iter().all(|path| path.is_dashed), "as in the plan");
     }
 
     #[test]

@@ -152,7 +152,7 @@ pub(super) fn add(
     scene.paths.push(ScenePath {
         name: name.to_owned(),
         role,
-        is_dashed: role == SceneRole::Recorded,
+        is_dashed: role.is_dashed(),
         has_ticks: true,
         motion: Arc::clone(&motion),
     });

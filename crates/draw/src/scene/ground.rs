@@ -9,6 +9,7 @@ use crate::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_colo
 use crate::scene::span::{SPAN, Span};
 use crate::scene::underlay::{Underlay, ground_strokes};
 use crate::scene::{Projection, camera::NEAR_M};
+use impactlab_document::figure::Dashes;
 use impactlab_document::scene::{Scene, SceneDensity, SceneLine, SceneRole};
 
 /// Opacity of the largest density.
@@ -27,8 +28,8 @@ const CASING_POINTS: f64 = 1.1;
 const CASING_OPACITY: f32 = 0.5;
 /// Width from which a line has such an edge, points: the edges of many thin ones would hide the picture.
 const LEAST_CASED: f64 = 1.0;
-/// Length and gap of dashes, points.
-const DASH: [f64; 2] = [8.0, 5.0];
+/// Shortest dash without its round ends, points.
+const LEAST_DASH: f64 = 0.5;
 /// Time between the heading ticks along a path, s, and their half length, m.
 const TICK_INTERVAL_S: f64 = 0.5;
 const TICK_HALF_M: f64 = 0.9;
@@ -148,7 +149,7 @@ impl Ground<'_> {
             let width = if path.role == SceneRole::Muted { 0.9 } else { 1.6 };
             let points: Vec<[f64; 2]> =
                 path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]).collect();
-            let pen = Pen { color, width, is_dashed: path.is_dashed };
+            let pen = Pen::dashed_if(path.is_dashed, path.role, color, width);
             self.line(&points, pen, &mut strokes);
             if path.has_ticks {
                 self.ticks(path, color, &mut strokes);
@@ -159,12 +160,10 @@ impl Ground<'_> {
         }
         for point in &self.scene.points {
             let color = role_color(point.role, self.dark);
-            let pen = Pen { color, width: 6.0, is_dashed: false };
-            self.line(&[point.at_m, point.at_m], pen, &mut strokes);
+            self.line(&[point.at_m, point.at_m], Pen::solid(color, 6.0), &mut strokes);
         }
         for arrow in &self.scene.arrows {
-            let pen =
-                Pen { color: role_color(arrow.role, self.dark), width: 2.6, is_dashed: false };
+            let pen = Pen::solid(role_color(arrow.role, self.dark), 2.6);
             for line in arrow_lines(arrow.ends_m) {
                 self.line(&line, pen, &mut strokes);
             }
@@ -180,7 +179,8 @@ impl Ground<'_> {
             true => (mixed(ground_color(self.dark), color, 0.6), 1.1),
             false => (color, 1.8),
         };
-        self.line(&line.points_m, Pen { color, width, is_dashed: line.is_dashed }, strokes);
+        let pen = Pen::dashed_if(line.is_dashed, line.role, color, width);
+        self.line(&line.points_m, pen, strokes);
     }
 
     fn ticks(
@@ -197,8 +197,8 @@ impl Ground<'_> {
             let ends = [-TICK_HALF_M, TICK_HALF_M].map(|x| pose.world_from_body([x, 0.0]));
             // The front end is thicker.
             let front = [pose.world_from_body([0.45 * TICK_HALF_M, 0.0]), ends[1]];
-            self.line(&ends, Pen { color, width: 1.2, is_dashed: false }, strokes);
-            self.line(&front, Pen { color, width: 3.0, is_dashed: false }, strokes);
+            self.line(&ends, Pen::solid(color, 1.2), strokes);
+            self.line(&front, Pen::solid(color, 3.0), strokes);
         }
     }
 
@@ -244,11 +244,11 @@ impl Ground<'_> {
                 held = Some(from);
                 continue;
             }
-            if !pen.is_dashed {
+            let Some(dashes) = pen.dashes() else {
                 push([from, to]);
                 continue;
-            }
-            let [dash, gap] = DASH.map(|points| points * self.points);
+            };
+            let [dash, gap] = dashes.map(|points| points * self.points);
             // What is far off the picture is not dashed.
             if length >= 1e5 {
                 continue;
@@ -302,8 +302,29 @@ pub struct Pen {
     pub color: Color32,
     /// Width, points.
     pub width: f64,
-    /// Whether it is dashed.
-    pub is_dashed: bool,
+    /// How it is dashed, if it is.
+    pub dashes: Option<Dashes>,
+}
+
+impl Pen {
+    /// A pen for a continuous line.
+    pub fn solid(color: Color32, width: f64) -> Self {
+        Self { color, width, dashes: None }
+    }
+
+    /// A pen for a line of a role that may be dashed.
+    pub fn dashed_if(is_dashed: bool, role: SceneRole, color: Color32, width: f64) -> Self {
+        Self { color, width, dashes: is_dashed.then(|| role.dashes()) }
+    }
+
+    /// Length and gap of its dashes between the middles of their round ends, points, so that they are seen as
+    /// long as in a plan.
+    fn dashes(&self) -> Option<[f64; 2]> {
+        let dashes = self.dashes?;
+        let [dash, gap] = [dashes.length, dashes.gap()].map(f64::from);
+        let core = (dash - self.width).max(LEAST_DASH);
+        Some([core, dash + gap - core])
+    }
 }
 
 /// Shaft and head of an arrow on the ground.
@@ -334,4 +355,27 @@ fn density_share(density: &SceneDensity, off_m: [f32; 2]) -> f32 {
     let row = |j: usize| value(i, j) + (value(i + 1, j) - value(i, j)) * fx;
     let here = row(j) + (row(j + 1) - row(j)) * fy;
     (here / density.peak as f32).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_document::figure::N_VARIANT_COLORS;
+
+    /// Paths of variants whose colour came again were the same.
+    #[test]
+    fn variants_of_one_colour_have_dashes_of_their_own_as_long_as_in_a_plan() {
+        let width = 2.6;
+        let roles = [0, N_VARIANT_COLORS].map(SceneRole::Variant);
+        let [first, again] = roles.map(|role| {
+            let pen = Pen::dashed_if(true, role, Color32::RED, width);
+            let [dash, gap] = pen.dashes().unwrap();
+            let plan = role.dashes();
+            assert!((dash + width - f64::from(plan.length)).abs() < 1e-6, "{dash}, {plan:?}");
+            assert!((gap - width - f64::from(plan.gap())).abs() < 1e-6, "{gap}, {plan:?}");
+            [dash, gap]
+        });
+        assert_ne!(first, again);
+        assert_eq!(Pen::solid(Color32::RED, width).dashes(), None);
+    }
 }

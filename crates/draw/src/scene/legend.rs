@@ -7,6 +7,7 @@ use egui::{Color32, FontId, Galley, Painter, Pos2, Rect, Sense, Stroke, Ui, Vec2
 use crate::scene::marks::ASPHALT;
 use crate::scene::shade::{ground_line_color, mark_color, role_color, zone_color};
 use impactlab_core::units::Language;
+use impactlab_document::figure::Dashes;
 use impactlab_document::scene::{AreaKind, CarLook, GroundLineKind, Scene, SceneRole};
 
 /// Draws the names of what the scene shows, each with its colour.
@@ -157,8 +158,11 @@ fn draw_sample(painter: &Painter, rect: Rect, color: Color32, kind: Entry) {
             painter.rect_filled(inside, 2.0, ASPHALT);
             painter.line_segment([from, to], Stroke::new(3.0, color));
         }
-        Entry::Dashed => {
-            painter.extend(egui::Shape::dashed_line(&[from, to], stroke, 5.0, 3.0));
+        Entry::Dashed(dashes) => {
+            for ends in dashes.sample {
+                let ends = ends.map(|share| rect.center() + vec2(share * rect.width(), 0.0));
+                painter.line_segment(ends, stroke);
+            }
         }
         Entry::Hatched => {
             painter.rect_filled(inside, 0.0, color.gamma_multiply(0.25));
@@ -190,7 +194,7 @@ enum Entry {
     Line,
     /// A line on the picture of a road, whose colour does not depend on the theme.
     OnAsphalt,
-    Dashed,
+    Dashed(Dashes),
     Point,
     Cross,
 }
@@ -199,14 +203,26 @@ enum Entry {
 fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
     let mut entries: Vec<(&str, Color32, Entry)> = Vec::new();
     let cars = scene.cars.iter().rev().map(|car| {
-        let kind = if car.look == CarLook::Solid { Entry::Solid } else { Entry::Ghost };
+        let kind = match (car.role, car.look) {
+            // Its colour may come again: its dashes are those of its path.
+            (SceneRole::Variant(_), _) => Entry::Dashed(car.role.dashes()),
+            (_, CarLook::Solid) => Entry::Solid,
+            (_, CarLook::Ghost) => Entry::Ghost,
+        };
         (car.name.as_str(), car.role, kind)
     });
-    let lined = |is_dashed| if is_dashed { Entry::Dashed } else { Entry::Line };
-    let paths =
-        scene.paths.iter().map(|path| (path.name.as_str(), path.role, lined(path.is_dashed)));
-    let lines =
-        scene.lines.iter().map(|line| (line.name.as_str(), line.role, lined(line.is_dashed)));
+    let lined = |role: SceneRole, is_dashed: bool| match is_dashed {
+        true => Entry::Dashed(role.dashes()),
+        false => Entry::Line,
+    };
+    let paths = scene
+        .paths
+        .iter()
+        .map(|path| (path.name.as_str(), path.role, lined(path.role, path.is_dashed)));
+    let lines = scene
+        .lines
+        .iter()
+        .map(|line| (line.name.as_str(), line.role, lined(line.role, line.is_dashed)));
     let marks =
         scene.marks.iter().map(|mark| (mark.name.as_str(), SceneRole::TireMark, Entry::Solid));
     let crushes =

@@ -48,19 +48,19 @@ impl MovingLines {
             let points: Vec<[f64; 2]> =
                 past.chain([&now]).map(|state| [state.pose.x_m, state.pose.y_m]).collect();
             let color = role_color(path.role, ground.dark);
-            let pen = Pen { color, width: past_width(path.role), is_dashed: path.is_dashed };
+            let width = past_width(path.role);
+            let pen = Pen::dashed_if(path.is_dashed, path.role, color, width);
             ground.line(&points, pen, &mut self.below);
         }
         for line in ground.scene.lines.iter().filter(|line| line.is_above_cars) {
             let color = role_color(line.role, ground.dark);
-            let pen = Pen { color, width: 1.8, is_dashed: line.is_dashed };
+            let pen = Pen::dashed_if(line.is_dashed, line.role, color, 1.8);
             ground.line(&line.points_m, pen, &mut self.above);
         }
         self.crushes(ground, time_s);
         for force in &ground.scene.forces {
             let Some(ends_m) = force.at(time_s) else { continue };
-            let pen =
-                Pen { color: role_color(force.role, ground.dark), width: 3.2, is_dashed: false };
+            let pen = Pen::solid(role_color(force.role, ground.dark), 3.2);
             for line in arrow_lines(ends_m) {
                 ground.line(&line, pen, &mut self.above);
             }
@@ -68,7 +68,7 @@ impl MovingLines {
         for cross in &ground.scene.crosses {
             let color = role_color(SceneRole::Evidence, ground.dark);
             let is_met = cross.time_s <= time_s;
-            let pen = Pen { color, width: if is_met { 3.0 } else { 1.5 }, is_dashed: false };
+            let pen = Pen::solid(color, if is_met { 3.0 } else { 1.5 });
             let [x, y] = cross.at_m;
             for slope in [1.0, -1.0] {
                 let ends = [[x - CROSS_M, y - slope * CROSS_M], [x + CROSS_M, y + slope * CROSS_M]];
@@ -87,7 +87,7 @@ impl MovingLines {
                 let (front, rear, side) = (body.front_m, body.rear_m(), body.width_m / 2.0);
                 let corners = [[front, side], [rear, side], [rear, -side], [front, -side]];
                 let [a, b, c, d] = corners.map(|corner| state.pose.world_from_body(corner));
-                let pen = Pen { color, width: 1.3, is_dashed: car.role == SceneRole::Recorded };
+                let pen = Pen::dashed_if(car.role.is_dashed(), car.role, color, 1.3);
                 ground.line(&[a, b, c, d, a], pen, &mut self.above);
             }
             if ground.projection.is_parallel() && car.look == CarLook::Solid {
@@ -105,7 +105,7 @@ impl MovingLines {
             let in_world = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
                 line.iter().map(|at| pose.world_from_body(*at)).collect()
             };
-            let pen = |width| Pen { color, width, is_dashed: false };
+            let pen = |width| Pen::solid(color, width);
             let outline = in_world(&crush.outline_m);
             let is_parallel = ground.projection.is_parallel();
             let lines = if is_parallel { &mut self.above } else { &mut self.below };
@@ -121,7 +121,7 @@ impl MovingLines {
         let points = [[front + wing, half], [front + tip, 0.0], [front + wing, -half]];
         let points = points.map(|point| pose.world_from_body(point));
         let color = role_color(car.role, ground.dark);
-        ground.line(&points, Pen { color, width: 2.2, is_dashed: false }, &mut self.below);
+        ground.line(&points, Pen::solid(color, 2.2), &mut self.below);
     }
 
     /// From above the body hides its wheels, which are therefore drawn over it.
