@@ -1,5 +1,6 @@
 //! What is written for other programs, read back.
 
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -12,7 +13,7 @@ use impactlab_core::units::{Phrase, PhraseValue, Quantity, UnitSystem};
 use impactlab_core::vehicle::Wheel;
 use impactlab_document::exchange::{DxfOptions, GltfFrame, dxf, glb, hve_motion, hve_pulse};
 use impactlab_document::scene::{
-    CarLook, Scene, SceneGround, SceneRole, SimulationScene, simulation_scene,
+    CarLook, Scene, SceneGround, ScenePath, SceneRole, SimulationScene, simulation_scene,
 };
 use impactlab_study::{
     Library, MotionSource, Question, ScenarioChoice, SeriesFile, SimulateAnswer, SimulateRequest,
@@ -98,6 +99,43 @@ fn a_drawing_has_metres_layers_closed_outlines_and_restrictions() {
         .collect();
     assert!(texts.iter().any(|text| text.contains("second contact")), "{texts:?}");
     assert!(texts.iter().any(|text| text.contains("0.500 s")), "{texts:?}");
+}
+
+/// All variants had one colour, and no line was dashed.
+#[test]
+fn each_variant_has_its_colour_and_its_dashes() {
+    let (_, mut scene) = case();
+    let path = scene.paths.first().expect("a path").clone();
+    let roles = [0, 1, 2].map(SceneRole::Variant);
+    scene.paths =
+        roles.map(|role| ScenePath { role, is_dashed: role.is_dashed(), ..path.clone() }).to_vec();
+    let mut bytes = Vec::new();
+    dxf(&scene, &DxfOptions::default(), &mut bytes).expect("a drawing");
+    let drawing = Drawing::load(&mut bytes.as_slice()).expect("a drawing that can be read");
+    let layers = drawing.layers().filter(|layer| layer.name.starts_with("VARIANT_"));
+    let colors: BTreeSet<Option<u8>> = layers.map(|layer| layer.color.index()).collect();
+    assert_eq!(colors.len(), 3, "{colors:?}");
+    let paths: Vec<_> = drawing
+        .entities()
+        .filter(|entity| entity.common.layer.starts_with("VARIANT_"))
+        .map(|entity| entity.common.line_type_name.as_str())
+        .collect();
+    assert_eq!(paths, ["DASHED_10", "DASHED_5", "DASHED_18"]);
+    for name in paths {
+        let line_type = drawing.line_types().find(|of| of.name == name).expect("a line type");
+        let [dash, gap] = line_type.dash_dot_space_lengths[..] else { panic!("{line_type:?}") };
+        assert!(dash > 0.0 && gap < 0.0, "{line_type:?}");
+        assert!((line_type.total_pattern_length - dash + gap).abs() < 1e-9, "{line_type:?}");
+    }
+    let mut bytes = Vec::new();
+    glb(&scene, &mut bytes).expect("a scene");
+    let file = gltf::Gltf::from_slice(&bytes).expect("a valid file");
+    let color = |name: &str| {
+        let material = file.materials().find(|of| of.name() == Some(name)).expect("a material");
+        material.pbr_metallic_roughness().base_color_factor()
+    };
+    let [a, b, c] = ["VARIANT_1 line", "VARIANT_2 line", "VARIANT_3 line"].map(color);
+    assert!(a != b && b != c && c != a, "{a:?} {b:?} {c:?}");
 }
 
 /// A vector turned by a unit quaternion `[x, y, z, w]`.

@@ -2,8 +2,9 @@
 //!
 //! Each role and kind has a layer: `SIMULATED_PATH`, `STRIKING_OUTLINE`, `EVIDENCE_POINT`. Axes are those
 //! of the scene: X along the road, Y to the left. Outlines of cars are closed polylines at chosen
-//! instants, with the instant beside them. What restricts the answer stands as text below the drawing, in
-//! the layer `RESTRICTIONS`, in the units of the scene as its labels are.
+//! instants, with the instant beside them. A line that is dashed in the scene has a line type with the
+//! same dashes. What restricts the answer stands as text below the drawing, in the layer `RESTRICTIONS`,
+//! in the units of the scene as its labels are.
 //!
 //! Dates and identifiers of the drawing are fixed, so that the same scene gives the same drawing.
 
@@ -12,11 +13,12 @@ use std::io::Write;
 
 use dxf::entities::{Entity, EntityType, Line, LwPolyline, ModelPoint, Text};
 use dxf::enums::{AcadVersion, DrawingUnits, Units};
-use dxf::tables::Layer;
+use dxf::tables::{Layer, LineType};
 use dxf::{Color, Drawing, LwPolylineVertex, Point};
 
 use crate::exchange::ExchangeError;
 use crate::exchange::looks::{is_draw, role_aci, role_name};
+use crate::figure::Dashes;
 use crate::scene::{Scene, SceneCar, SceneMark, SceneRole};
 use impactlab_core::site::SiteOrigin;
 
@@ -26,6 +28,8 @@ const TEXT_M: f64 = 0.4;
 const LINE_M: f64 = 0.7;
 /// Half the size of the cross at a second contact, m.
 const CROSS_M: f64 = 0.6;
+/// Length of a dash for each point that it has on the screen, m.
+const DASH_M_PER_POINT: f64 = 0.1;
 /// Layer of what restricts the answer.
 const RESTRICTIONS: &str = "RESTRICTIONS";
 
@@ -45,7 +49,8 @@ pub fn dxf(scene: &Scene, options: &DxfOptions, out: &mut dyn Write) -> Result<(
     let mut sheet = Sheet::default();
     for path in &scene.paths {
         let places = path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]);
-        sheet.polyline(path.role, "PATH", places, false);
+        let dashes = path.is_dashed.then(|| path.role.dashes());
+        sheet.polyline((path.role, "PATH"), dashes, places, false);
     }
     for car in scene.cars.iter().filter(|car| !is_draw(car)) {
         options.outlines_s.iter().for_each(|time_s| sheet.outline(car, *time_s));
@@ -54,16 +59,17 @@ pub fn dxf(scene: &Scene, options: &DxfOptions, out: &mut dyn Write) -> Result<(
         let is_closed = line.points_m.len() > 2 && line.points_m.first() == line.points_m.last();
         let n = line.points_m.len() - usize::from(is_closed);
         let places = line.points_m.iter().take(n).copied();
-        sheet.polyline(line.role, "LINE", places, is_closed);
+        let dashes = line.is_dashed.then(|| line.role.dashes());
+        sheet.polyline((line.role, "LINE"), dashes, places, is_closed);
     }
     for piece in scene.marks.iter().flat_map(SceneMark::pieces) {
         let places = piece.iter().map(|point| point.place_m);
-        sheet.polyline(SceneRole::TireMark, "LINE", places, false);
+        sheet.polyline((SceneRole::TireMark, "LINE"), None, places, false);
     }
     for crush in &scene.crushes {
         let pose = crush.motion.at(crush.from_s).pose;
         let places = crush.outline_m.iter().map(|corner| pose.world_from_body(*corner));
-        sheet.polyline(SceneRole::Crush, "OUTLINE", places, true);
+        sheet.polyline((SceneRole::Crush, "OUTLINE"), None, places, true);
     }
     for point in &scene.points {
         sheet.add(point.role, "POINT", EntityType::ModelPoint(ModelPoint::new(at(point.at_m))));
@@ -93,6 +99,8 @@ struct Sheet {
     entities: Vec<Entity>,
     /// Layers and their colours, in a fixed order.
     layers: BTreeMap<String, u8>,
+    /// Line types by their names.
+    line_types: BTreeMap<String, LineType>,
 }
 
 impl Sheet {
@@ -108,20 +116,30 @@ impl Sheet {
     }
 
     /// A line through places, without those that are not finite.
+    ///
+    /// - `dashes`: of a line that is dashed.
     fn polyline(
         &mut self,
-        role: SceneRole,
-        kind: &str,
+        (role, kind): (SceneRole, &str),
+        dashes: Option<Dashes>,
         places_m: impl Iterator<Item = [f64; 2]>,
         is_closed: bool,
     ) {
         let finite = places_m.filter(|place| place.iter().all(|value| value.is_finite()));
         let vertices: Vec<LwPolylineVertex> =
             finite.map(|[x, y]| LwPolylineVertex { x, y, ..LwPolylineVertex::default() }).collect();
-        if vertices.len() > 1 {
-            let mut line = LwPolyline { vertices, ..LwPolyline::default() };
-            line.set_is_closed(is_closed);
-            self.add(role, kind, EntityType::LwPolyline(line));
+        if vertices.len() < 2 {
+            return;
+        }
+        let mut line = LwPolyline { vertices, ..LwPolyline::default() };
+        line.set_is_closed(is_closed);
+        // Dashes go on across vertices, which are closer to each other than they are long.
+        line.set_is_pline_gen(dashes.is_some());
+        self.add(role, kind, EntityType::LwPolyline(line));
+        if let (Some(dashes), Some(entity)) = (dashes, self.entities.last_mut()) {
+            let of_dashes = line_type(dashes);
+            entity.common.line_type_name.clone_from(&of_dashes.name);
+            self.line_types.insert(of_dashes.name.clone(), of_dashes);
         }
     }
 
@@ -141,7 +159,7 @@ impl Sheet {
         let (front, rear, side) = (body.front_m, body.rear_m(), body.width_m / 2.0);
         let corners = [[front, side], [rear, side], [rear, -side], [front, -side]];
         let places = corners.iter().map(|corner| pose.world_from_body(*corner));
-        self.polyline(car.role, "OUTLINE", places, true);
+        self.polyline((car.role, "OUTLINE"), None, places, true);
         self.line(
             car.role,
             "OUTLINE",
@@ -177,6 +195,9 @@ impl Sheet {
         (header.creation_date, header.update_date) = (beginning.into(), beginning.into());
         (header.creation_date_universal, header.update_date_universal) = (beginning, beginning);
         (header.fingerprint_guid, header.version_guid) = (uuid::Uuid::nil(), uuid::Uuid::nil());
+        for line_type in self.line_types.into_values() {
+            drawing.add_line_type(line_type);
+        }
         for (name, aci) in self.layers {
             drawing.add_layer(Layer { name, color: Color::from_index(aci), ..Layer::default() });
         }
@@ -184,6 +205,21 @@ impl Sheet {
             drawing.add_entity(entity);
         }
         Ok(drawing.save(&mut out)?)
+    }
+}
+
+/// The line type of dashes.
+fn line_type(dashes: Dashes) -> LineType {
+    let Dashes { length, .. } = dashes;
+    let [dash_m, gap_m] = [length, dashes.gap()].map(|points| f64::from(points) * DASH_M_PER_POINT);
+    LineType {
+        name: format!("DASHED_{length:.0}"),
+        description: format!("dashes of {dash_m:.1} m"),
+        element_count: 2,
+        total_pattern_length: dash_m + gap_m,
+        // Gaps are negative.
+        dash_dot_space_lengths: vec![dash_m, -gap_m],
+        ..LineType::default()
     }
 }
 

@@ -1,6 +1,10 @@
 //! Names and colours of what a scene shows, for formats that are drawn by other programs.
 
+use crate::figure::variant_colors;
 use crate::scene::{CarLook, SceneCar, SceneRole};
+
+/// The five values of the colours of the index of AutoCAD.
+const ACI_VALUES: [f64; 5] = [255.0, 189.0, 129.0, 104.0, 79.0];
 
 /// Name of a role, as it begins the names of layers and materials.
 pub fn role_name(role: SceneRole) -> String {
@@ -25,7 +29,7 @@ pub fn role_rgb(role: SceneRole) -> [u8; 3] {
         SceneRole::Striking => [213, 94, 0],
         SceneRole::Evidence => [170, 68, 136],
         SceneRole::Recorded => [60, 60, 60],
-        SceneRole::Variant(_) => [140, 110, 40],
+        SceneRole::Variant(idx) => variant_colors(idx)[0],
         SceneRole::Muted => [150, 150, 150],
         SceneRole::TireMark => [40, 40, 40],
         SceneRole::Crush => [190, 40, 40],
@@ -40,14 +44,67 @@ pub fn role_aci(role: SceneRole) -> u8 {
         SceneRole::Striking => 30,
         SceneRole::Evidence => 6,
         SceneRole::Recorded => 8,
-        SceneRole::Variant(_) => 42,
+        SceneRole::Variant(_) => nearest_aci(role_rgb(role)),
         SceneRole::Muted => 9,
         SceneRole::TireMark => 250,
         SceneRole::Crush => 1,
     }
 }
 
+/// The colour of the index of AutoCAD that is nearest to a colour, of those that are not grey: 10 to 249.
+fn nearest_aci(rgb: [u8; 3]) -> u8 {
+    let distance = |aci: &u8| {
+        let channels = aci_rgb(*aci).into_iter().zip(rgb);
+        channels.map(|(of_index, wanted)| (of_index - f64::from(wanted)).powi(2)).sum::<f64>()
+    };
+    (10..250).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(7)
+}
+
+/// Red, green and blue of a colour of the index of AutoCAD, 10 to 249: 24 hues, each in five values, pure where
+/// the number is even, and a third as saturated where it is odd.
+fn aci_rgb(aci: u8) -> [f64; 3] {
+    let sixth = f64::from(aci / 10 - 1) / 4.0;
+    let high = ACI_VALUES[usize::from(aci % 10 / 2)];
+    let low = if aci.is_multiple_of(2) { 0.0 } else { high * 2.0 / 3.0 };
+    // How far each of red, green and blue is from the hue, in sixths of the circle of hues.
+    [5.0, 3.0, 1.0].map(|of_channel| {
+        let off = (of_channel + sixth) % 6.0;
+        high - (high - low) * f64::min(off, 4.0 - off).clamp(0.0, 1.0)
+    })
+}
+
 /// Whether a car is one of many draws of a forecast, of which only the paths are of use.
 pub fn is_draw(car: &SceneCar) -> bool {
     car.look == CarLook::Ghost && car.role == SceneRole::Forecast && car.tag.is_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::figure::N_VARIANT_COLORS;
+
+    #[test]
+    fn the_index_of_autocad_has_its_published_colours() {
+        for (aci, expected) in [
+            (10, [255.0, 0.0, 0.0]),
+            (11, [255.0, 170.0, 170.0]),
+            (30, [255.0, 127.5, 0.0]),
+            (94, [0.0, 129.0, 0.0]),
+            (170, [0.0, 0.0, 255.0]),
+            (218, [79.0, 0.0, 79.0]),
+        ] {
+            assert_eq!(aci_rgb(aci), expected, "{aci}");
+        }
+    }
+
+    /// All variants had the same.
+    #[test]
+    fn each_variant_has_a_colour_of_its_own() {
+        let roles = || (0..N_VARIANT_COLORS).map(SceneRole::Variant);
+        let aci: BTreeSet<u8> = roles().map(role_aci).collect();
+        let rgb: BTreeSet<[u8; 3]> = roles().map(role_rgb).collect();
+        assert_eq!([aci.len(), rgb.len()], [N_VARIANT_COLORS; 2], "{aci:?} {rgb:?}");
+    }
 }
