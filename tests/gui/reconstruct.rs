@@ -337,6 +337,7 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
         harness.run_steps(3);
     }
     assert_eq!(evidence(&harness).marks[0].points_m.len(), 2);
+    assert!(harness.query_by_label("y of point 2").is_some(), "what was clicked is listed");
     save(&mut harness, "reconstruct-new.png");
 
     edited = evidence(&harness);

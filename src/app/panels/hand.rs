@@ -1,12 +1,13 @@
 //! The “By hand” pane: a method, its inputs with their standard deviations, and what it gives, beside the
 //! reconstruction.
 
-use egui::{Button, ComboBox, Grid, Label, RichText, ScrollArea, Ui};
+use egui::{Button, ComboBox, Grid, Id, Label, RichText, ScrollArea, Ui};
 
 use crate::app::looks;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{EmptyField, caveats_ui, facts_ui, optional_quantity};
+use crate::app::widgets::{EmptyField, PointRows, caveats_ui, facts_ui, optional_quantity};
 use impactlab_core::data::Severity;
+use impactlab_core::ranges::HAND_COORDINATE;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::theme;
 use impactlab_reconstruct::evidence::{Evidence, Mark, Stated};
@@ -39,6 +40,11 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         if request.method.takes_points() {
             let preview = session.reconstruction.preview.as_ref();
             points_ui(ui, request, preview.map(|preview| &preview.evidence));
+            Grid::new("hand points").num_columns(4).show(ui, |ui| {
+                let (id, units) = (Id::unique("next point by hand"), view.units);
+                let rows = PointRows { id, range: &HAND_COORDINATE, units, is_narrow: false };
+                rows.draw(ui, &mut request.points_m);
+            });
         }
         ui.add_space(looks::PART);
         match &session.hand.answer {
@@ -92,11 +98,13 @@ fn inputs_ui(ui: &mut Ui, request: &mut HandRequest, units: UnitSystem) {
     });
 }
 
-/// Draws which points of a mark are taken: those of a mark of the evidence, which are clicked in the plan.
+/// Draws which points of a mark are taken beside those that are typed: those of a mark of the evidence.
 fn points_ui(ui: &mut Ui, request: &mut HandRequest, evidence: Option<&Evidence>) {
     ui.horizontal_wrapped(|ui| {
         match request.points_m.len() {
-            0 => drop(ui.weak("Or points along the mark, as those of a mark of the evidence.")),
+            0 => drop(
+                ui.weak("Or points along the mark: typed, or those of a mark of the evidence."),
+            ),
             n => {
                 ui.weak(format!("{n} points along the mark."));
                 if ui.add(Button::new("Remove points").small()).clicked() {

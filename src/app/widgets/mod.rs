@@ -8,6 +8,7 @@ mod dataset_choice;
 mod facts;
 mod figure_frame;
 mod number;
+mod points;
 mod quantity;
 mod refusal;
 mod time_figure;
@@ -21,6 +22,7 @@ pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use facts::{facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
+pub use points::PointRows;
 pub use quantity::{
     EmptyField, SliderRange, count_field, duration_text, optional_count, optional_quantity,
     quantity_field, quantity_slider, quantity_value, seed_field, value_row, value_ui, within_view,

@@ -30,7 +30,7 @@ pub const STRUCK: Section = Section {
     title: "tire mark",
     group: Group::Scene,
     is_required: false,
-    missing: "needs at least two points: Add points, then click along it in the scene",
+    missing: "needs at least two points: type them, or Add points and click along it in the scene",
 };
 /// A mark of the striking car, likewise.
 pub const STRIKING: Section =

@@ -1,10 +1,10 @@
 //! The rows of a card of the evidence: one for each field, in a grid of four columns, or of two where the
 //! pane is narrow. A field that is empty is not known.
 
-use egui::{ComboBox, Response, Ui};
+use egui::{ComboBox, Id, Response, Ui};
 
 use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
-use crate::app::widgets::{EmptyField, optional_quantity};
+use crate::app::widgets::{EmptyField, PointRows, optional_quantity};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::{NumberFormat, UnitSystem, percent};
 use impactlab_reconstruct::evidence::{
@@ -145,7 +145,8 @@ impl Fields for FieldRows<'_> {
         self.ui.end_row();
     }
 
-    fn points(&mut self, _: &Field, sigma: &Sigma, PointsMut { points_m, sigma_m }: PointsMut<'_>) {
+    fn points(&mut self, field: &Field, sigma: &Sigma, points: PointsMut<'_>) {
+        let PointsMut { points_m, sigma_m } = points;
         let name = self.ui.label(sigma.field.label);
         self.sigma(sigma, None, sigma_m).labelled_by(name.id);
         self.ui.end_row();
@@ -154,17 +155,13 @@ impl Fields for FieldRows<'_> {
         self.ui.label(format!("{} points", points_m.len()));
         let is_adding = mark.is_some() && self.adds_to == mark;
         let hint = "Then click along the mark in the scene, from where it starts";
-        let adds = self.ui.selectable_label(is_adding, "Add points").on_hover_text(hint);
-        self.second_half();
-        self.ui.label("");
-        let last = egui::Button::new("Undo last").small();
-        if self.ui.add_enabled(!points_m.is_empty(), last).clicked() {
-            points_m.pop();
-        }
-        self.ui.end_row();
-        if adds.clicked() {
+        if self.ui.selectable_label(is_adding, "Add points").on_hover_text(hint).clicked() {
             self.command = Some(ReconstructionCommand::AddPoints(mark.filter(|_| !is_adding)));
         }
+        self.ui.end_row();
+        let id = Id::unique(("next point", self.item));
+        let (range, units, is_narrow) = (&field.range, self.units, self.is_narrow);
+        PointRows { id, range, units, is_narrow }.draw(self.ui, points_m);
     }
 
     fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
