@@ -67,11 +67,7 @@ pub(super) fn part(
     }
     blocks.extend(report.hand_table().map(|table| facts_table(&table, context)));
     if !doubts.is_empty() {
-        let template = match report.has_intervals() {
-            true => words.meaning_doubtful,
-            false => words.doubtful_figures,
-        };
-        let doubt = fill(template, &[("badges", &doubts.join(", "))]);
+        let doubt = doubt_of(&doubts, report.has_intervals(), report.modes.len(), wording);
         opinion.answer = format!("{} {doubt}", opinion.answer);
         // How often intervals of answers without such a restriction held says nothing of these.
         opinion.held = None;
@@ -116,6 +112,14 @@ fn doubts(report: &Answer<ReconstructReport>, wording: &Wording) -> Vec<&'static
         doubts.map(|caveat| caveat.kind.label_in(wording.language)).collect();
     doubts.dedup();
     doubts
+}
+
+/// That the figures are not to be relied on, nor the probabilities of courses of events where there are several.
+fn doubt_of(doubts: &[&str], has_intervals: bool, n_courses: usize, wording: &Wording) -> String {
+    let words = wording.words;
+    let template = if has_intervals { words.meaning_doubtful } else { words.doubtful_figures };
+    let courses = if n_courses > 1 { words.doubtful_courses } else { "" };
+    fill(template, &[("courses", courses), ("badges", &doubts.join(", "))])
 }
 
 /// Says beside each figure of the opinion whose intervals held too seldom when they were tried how often they
@@ -177,6 +181,15 @@ mod tests {
     use crate::report::paths::ShownPaths;
     use impactlab_core::units::UnitSystem;
     use impactlab_study::{Measured, Measurement};
+
+    /// “… and probabilities of courses of events” were doubted where the answer told of a single course.
+    #[test]
+    fn probabilities_of_courses_are_doubted_where_there_are_several() {
+        let wording = Wording::english(UnitSystem::Si);
+        let told = |n| doubt_of(&["few particles"], true, n, &wording);
+        assert!(told(2).starts_with("These intervals, and the probabilities of the courses"));
+        assert!(told(1).starts_with("These intervals are not to be relied on"), "{}", told(1));
+    }
 
     /// The annex alone said that intervals of the heading and of the yaw rate are known to be too narrow.
     #[test]

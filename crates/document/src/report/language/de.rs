@@ -155,10 +155,9 @@ pub(super) const WORDS: Words = Words {
                    Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
         wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
-    meaning_doubtful: "Auf diese Intervalle und auf Wahrscheinlichkeiten von Geschehensabläufen ist kein Verlass: siehe die \
-        Warnungen in Abschnitt 6 ({badges}).",
-    doubtful_figures: "Auf diese Werte und auf Wahrscheinlichkeiten von Geschehensabläufen ist kein Verlass: siehe die \
-        Warnungen in Abschnitt 6 ({badges}).",
+    meaning_doubtful: "Auf diese Intervalle{courses} ist kein Verlass: siehe die Warnungen in Abschnitt 6 ({badges}).",
+    doubtful_figures: "Auf diese Werte{courses} ist kein Verlass: siehe die Warnungen in Abschnitt 6 ({badges}).",
+    doubtful_courses: " und auf die Wahrscheinlichkeiten der Geschehensabläufe",
     too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
         Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \
         einzelner Partikel. Mit mehr Partikeln erneut fragen und die Rechnung zu Ende führen.",

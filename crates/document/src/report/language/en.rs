@@ -149,10 +149,9 @@ pub(super) const WORDS: Words = Words {
                    uncertain as they say, and do not depend on each other.",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
         of section 3 and the models of section 5 hold.",
-    meaning_doubtful: "These intervals, and probabilities of courses of events, are not to be relied on: see the warnings \
-        in section 6 ({badges}).",
-    doubtful_figures: "These figures, and probabilities of courses of events, are not to be relied on: see the warnings in \
-        section 6 ({badges}).",
+    meaning_doubtful: "These intervals{courses} are not to be relied on: see the warnings in section 6 ({badges}).",
+    doubtful_figures: "These figures{courses} are not to be relied on: see the warnings in section 6 ({badges}).",
+    doubtful_courses: ", and the probabilities of the courses of events,",
     too_few_particles: "No interval is given: the sample is equivalent to only {ess} independent draws, or the run was \
         stopped before the evidence had its full weight, so that the ends of an interval would rest on single \
         draws. Ask again with more particles, and let the run end.",

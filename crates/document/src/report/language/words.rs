@@ -119,6 +119,7 @@ pub(in crate::report) struct Words {
     pub meaning_posterior: &'static str,
     pub meaning_doubtful: &'static str,
     pub doubtful_figures: &'static str,
+    pub doubtful_courses: &'static str,
     pub too_few_particles: &'static str,
     pub held_when_tried: &'static str,
     pub with_everything_known: &'static str,
