@@ -52,16 +52,20 @@ pub(super) fn part(
     if let Some(hinges) = report.hinge_table() {
         blocks.extend([facts_table(&hinges, context), Block::paragraph(words.hinges_text)]);
     }
+    let doubts = doubts(&answer.report, wording);
     let speeds = report.speed_table();
     match report.has_intervals() {
-        true => blocks.extend(facts_with_meaning(&speeds, words.meaning_posterior, context)),
+        true if doubts.is_empty() => {
+            blocks.extend(facts_with_meaning(&speeds, words.meaning_posterior, context));
+        }
+        // That they hold with their probability would contradict the doubt below.
+        true => blocks.push(facts_table(&speeds, context)),
         false => {
             blocks.push(facts_table(&speeds, context));
             blocks.push(Block::paragraph(fill(words.too_few_particles, &[("ess", &ess)])));
         }
     }
     let mut opinion = opinion_of_reconstruction(report, &question, context);
-    let doubts = doubts(&answer.report, wording);
     if doubts.is_empty() {
         blocks.extend(too_narrow(report.held_too_seldom(), &mut opinion, context));
     }

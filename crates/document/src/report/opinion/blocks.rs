@@ -10,7 +10,7 @@ use crate::report::method::{Method, of_kinds};
 use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::differences::differences;
 use crate::report::opinion::part::{PartOpinion, Rank};
-use crate::report::opinion::words::opinion_words;
+use crate::report::opinion::words::{OpinionWords, opinion_words};
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::own_file;
@@ -174,17 +174,30 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         0 | 1 => NamedRows::new(),
         _ => taken_rows_alike(&mut columns),
     };
-    // What a simulation varies is less than what a forecast does not know, and an impact varies nothing.
-    let title = if are_all(spoken, Rank::Simulation) {
-        words.figures_of_simulation
-    } else if are_all(spoken, Rank::Impact) {
-        words.figures_of_impact
-    } else {
-        words.figures
-    };
+    let title = figures_title(spoken, words);
     let mut blocks = beside(title, [wording.words.quantity, wording.words.value], &columns, NONE);
     blocks.extend(told_alike(&alike, wording));
     blocks
+}
+
+/// The title of the figures, which says what stands in brackets.
+fn figures_title(spoken: &[Spoken<'_>], words: &OpinionWords) -> &'static str {
+    // What a simulation varies is less than what a forecast does not know, and an impact varies nothing.
+    if are_all(spoken, Rank::Simulation) {
+        return words.figures_of_simulation;
+    }
+    if are_all(spoken, Rank::Impact) {
+        return words.figures_of_impact;
+    }
+    let mut figures = spoken.iter().flat_map(Spoken::opinions).flat_map(|of| &of.figures);
+    // Few particles of a reconstruction allow medians alone.
+    if !figures.any(|[_, value]| value.contains('(')) {
+        return words.figures_alone;
+    }
+    match spoken.iter().flat_map(Spoken::opinions).any(|of| of.is_doubtful) {
+        true => words.figures_in_doubt,
+        false => words.figures,
+    }
 }
 
 /// Whether all answers are of one rank.
@@ -317,6 +330,7 @@ fn who(asked: Asked<'_>) -> Vec<Block> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Language;
     use impactlab_core::units::UnitSystem;
 
     /// Which of two forecasts of a variant an answer was of stood nowhere, and the figures were those of the
@@ -456,6 +470,31 @@ mod tests {
         assert!(told.contains("no intervals") && !told.contains("90 %"), "{told}");
         let told = format!("{:?}", held(&spoken, &wording));
         assert!(told.contains("have no interval") && !told.contains("not counted"), "{told}");
+    }
+
+    /// “In brackets the interval that holds with a probability of 90 %” stood above medians without any, and above
+    /// intervals of evidence that contradicts itself.
+    #[test]
+    fn figures_of_a_reconstruction_say_what_stands_in_brackets() {
+        let title = |value: &str, is_doubtful| {
+            let opinion = PartOpinion {
+                rank: Rank::Reconstruction,
+                question: "How fast?".to_owned(),
+                answer: value.to_owned(),
+                courses: Vec::new(),
+                figures: vec![["speed".to_owned(), value.to_owned()]],
+                held: None,
+                is_doubtful,
+                hinges: Vec::new(),
+            };
+            let part = Part { opinion: Some(opinion), ..Part::default() };
+            let (name, notes) = ("a".to_owned(), String::new());
+            let variants = [VariantParts { name, notes, answers: vec![Ok(part)] }];
+            figures_title(&spoken(&variants), opinion_words(Language::En))
+        };
+        assert!(title("67 (60 to 75) km/h", false).contains("probability of 90 %"));
+        assert!(title("67 (60 to 75) km/h", true).contains("as far as it can be relied on"));
+        assert_eq!(title("110 km/h", true), "Figures, which have no intervals");
     }
 
     /// Section 7 alone said that the pairs were computed without the force network.

@@ -11,6 +11,8 @@ pub(super) struct OpinionWords {
     pub course: &'static str,
     pub probability: &'static str,
     pub figures: &'static str,
+    pub figures_in_doubt: &'static str,
+    pub figures_alone: &'static str,
     pub figures_of_simulation: &'static str,
     pub figures_of_impact: &'static str,
     pub differs: &'static str,
@@ -80,6 +82,8 @@ const EN: OpinionWords = OpinionWords {
     course: "What becomes of the struck vehicle",
     probability: "Probability",
     figures: "Figures; in brackets the interval that holds with a probability of 90 %",
+    figures_in_doubt: "Figures; in brackets the interval of 90 %, as far as it can be relied on",
+    figures_alone: "Figures, which have no intervals",
     figures_of_simulation: "Figures; in brackets components, and over the drawn vehicles the interval in which nine of \
         ten of them lie, where only what data sheets leave open is varied",
     figures_of_impact: "Figures, which have no intervals; in brackets components",
@@ -161,6 +165,8 @@ const DE: OpinionWords = OpinionWords {
     course: "Verbleib des gestoßenen Fahrzeugs",
     probability: "Wahrscheinlichkeit",
     figures: "Ergebnisse; in Klammern der Bereich, der mit einer Wahrscheinlichkeit von 90 % zutrifft",
+    figures_in_doubt: "Ergebnisse; in Klammern der Bereich von 90 %, soweit auf ihn Verlass ist",
+    figures_alone: "Ergebnisse, die kein Intervall haben",
     figures_of_simulation: "Ergebnisse; in Klammern Komponenten, über die gezogenen Fahrzeuge der Bereich, in dem neun von \
         zehn liegen; variiert wird nur, was Datenblätter offen lassen",
     figures_of_impact: "Ergebnisse, die kein Intervall haben; in Klammern Komponenten",
