@@ -77,6 +77,9 @@ pub enum FrictionZoneError {
 }
 
 impl FrictionZone {
+    /// What a zone of a survey is called that has no name there.
+    pub const UNNAMED: &'static str = "friction zone";
+
     /// Checks friction and border. Sides of the border may touch each other, as around a hole, but not
     /// cross.
     ///

@@ -25,8 +25,8 @@ pub(super) fn answer_blocks(
 ) -> Vec<Block> {
     let words = wording.words;
     let date = date.written(wording.language);
-    let values =
-        [("case", &*case.name), ("date", &*date), ("version", impactlab_core::program::version())];
+    let (name, version) = (wording.given_name(&case.name), impactlab_core::program::version());
+    let values = [("case", &*name), ("date", &*date), ("version", version)];
     let mut blocks = Vec::new();
     blocks.push(Block::paragraph(fill(words.intro, &values)));
     blocks.push(Block::paragraph(match wording.units {

@@ -59,13 +59,12 @@ pub fn report_case(
             Ok(answer) => Ok(part_of(request, answer, context)),
             Err(error) => Err(paths.shown(&error_chain(error))),
         };
+        let name = wording.given_name(&variant.name);
         match parts.last_mut() {
-            Some(last) if last.name == variant.name => last.answers.push(part),
-            _ => parts.push(VariantParts {
-                name: variant.name.clone(),
-                notes: variant.notes.clone(),
-                answers: vec![part],
-            }),
+            Some(last) if last.name == name => last.answers.push(part),
+            _ => {
+                parts.push(VariantParts { name, notes: variant.notes.clone(), answers: vec![part] })
+            }
         }
     })?;
     let Outcome::Complete(mut report) = outcome else { return Ok(Outcome::Cancelled) };
@@ -114,9 +113,10 @@ impl Builder<'_> {
             let title = if number == 0 { title.to_owned() } else { format!("{number} {title}") };
             Section { kind, title, blocks: blocks(kind) }
         });
+        let case = self.wording.given_name(&self.case.name);
         ReportDocument {
-            title: format!("{}: {}", words.report, self.case.name),
-            case: self.case.name.clone(),
+            title: format!("{}: {case}", words.report),
+            case,
             date: settings.date.written(settings.language),
             date_iso: settings.date.to_string(),
             day: settings.date.parts(),

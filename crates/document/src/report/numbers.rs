@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use crate::report::language::{Words, phrase_of, words_of};
+use crate::report::language::{Words, given_name_of, phrase_of, words_of};
 use crate::report::{Language, ReportDate, ReportSettings};
 use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::{NumberFormat, Phrase, Quantity, UnitSystem, significant, trimmed};
@@ -98,8 +98,14 @@ impl Wording {
         let parts = || -> Option<Vec<String>> {
             text.split(", ").map(|part| phrase_of(self.language, part)).collect()
         };
-        let known = phrase_of(self.language, text).or_else(|| Some(parts()?.join(", ")));
+        let known = given_name_of(self.language, text).or_else(|| phrase_of(self.language, text));
+        let known = known.or_else(|| Some(parts()?.join(", ")));
         known.map_or_else(|| text.to_owned(), |known| self.local(&known))
+    }
+
+    /// A name of a case, a variant or a zone: in the language of the report if the program gave it, else as it is.
+    pub fn given_name(&self, name: &str) -> String {
+        given_name_of(self.language, name).unwrap_or_else(|| name.to_owned())
     }
 
     /// What a caveat says, in the units of the report; as [`Wording::quoted`] if in English alone.

@@ -147,20 +147,22 @@ pub(super) fn network_name(network: &str, wording: &Wording) -> String {
     }
 }
 
-/// An entry of the log. Names of variants stay as they are, also where they are words of the program.
+/// An entry of the log. Names of variants stay as they are, also where they are words of the program; those that
+/// the program gave are as elsewhere in the report.
 fn event_text(event: &str, wording: &Wording) -> String {
     if wording.language == Language::En {
         return event.to_owned();
     }
     let pieces: Vec<&str> = event.split('"').collect();
+    let named = |name| wording.given_name(name);
     match pieces[..] {
         ["variant ", name, " copied from ", of, ""] => {
-            format!("Variante „{name}“ aus „{of}“ kopiert")
+            format!("Variante „{}“ aus „{}“ kopiert", named(name), named(of))
         }
         ["variant ", before, " renamed to ", name, ""] => {
-            format!("Variante „{before}“ in „{name}“ umbenannt")
+            format!("Variante „{}“ in „{}“ umbenannt", named(before), named(name))
         }
-        ["variant ", name, " removed"] => format!("Variante „{name}“ entfernt"),
+        ["variant ", name, " removed"] => format!("Variante „{}“ entfernt", named(name)),
         ["saved"] => "gespeichert".to_owned(),
         ["opened"] => "geöffnet".to_owned(),
         ["opened; edited since it was saved"] => {
@@ -210,6 +212,7 @@ mod tests {
             (r#"variant "left" renamed to "mass""#, "Variante „left“ in „mass“ umbenannt"),
             (r#"variant "b" copied from "a""#, "Variante „b“ aus „a“ kopiert"),
             (r#"variant "b" removed"#, "Variante „b“ entfernt"),
+            (r#"variant "base 2" removed"#, "Variante „Grundfall 2“ entfernt"),
             ("packed into case.zip", "gepackt in case.zip"),
             ("saved", "gespeichert"),
             (r#"variant "a \"b\"" removed"#, r#"„variant "a \"b\"" removed“"#),

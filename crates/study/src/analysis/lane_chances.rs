@@ -6,6 +6,7 @@ use serde::Serialize;
 use crate::analysis::MotionForecast;
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::site::Site;
+use impactlab_core::vehicle::FrictionZone;
 
 /// Every how many samples of a path its outline is looked at: at 30 m/s a vehicle goes 0.6 m in that time.
 const STRIDE: usize = 2;
@@ -15,6 +16,9 @@ const STRIDE: usize = 2;
 pub struct PlaceChance {
     /// What the site calls it; its number where it has no name.
     pub name: String,
+    /// Whether the site gives it no name, so that the program did.
+    #[serde(skip)]
+    pub is_unnamed: bool,
     /// Whether a part of the struck vehicle is over it at first contact.
     pub struck_starts: bool,
     /// Probability that a part of the struck vehicle comes over it; 1 where it is over it at first contact.
@@ -57,9 +61,11 @@ pub fn place_chances(
             let first = paths[i].first().and_then(|path| path.first());
             first.is_some_and(|pose| over(i, pose))
         };
+        let is_unnamed = name.is_empty() || name == FrictionZone::UNNAMED;
         let name = if name.is_empty() { fallback } else { name.to_owned() };
         PlaceChance {
             name,
+            is_unnamed,
             struck_starts: starts(0),
             struck_enters: enters(0),
             struck_ends: ends(0),

@@ -15,6 +15,14 @@ const NAMED_SHARE: f64 = 0.1;
 /// Lanes, kerbs and zones that are named of each vehicle.
 const N_PLACES: usize = 3;
 
+/// What a lane, a kerb or a zone is called: as in the file of the site, or a name of the program.
+pub(super) fn name_of(place: &PlaceChance) -> Value {
+    match place.is_unnamed {
+        true => Value::Name(place.name.clone()),
+        false => Value::Text(place.name.clone()),
+    }
+}
+
 impl PredictMotionReport {
     /// The answer in one table.
     pub fn answer_table(&self) -> FactTable {
@@ -90,7 +98,7 @@ impl PredictMotionReport {
 
     fn place_facts(&self) -> Vec<Fact> {
         let named = |term: Term, place: &PlaceChance, share: f64| {
-            let name = vec![Value::Term(term), Value::Text(place.name.clone())];
+            let name = vec![Value::Term(term), name_of(place)];
             Fact::row(Value::Joined(name, " "), vec![self.place_chance(share)])
         };
         let [struck, striking] = self.entered_places();
@@ -211,6 +219,7 @@ pub(super) mod tests {
     pub fn place(name: &str, struck_starts: bool) -> PlaceChance {
         PlaceChance {
             name: name.to_owned(),
+            is_unnamed: false,
             struck_starts,
             struck_enters: 1.0,
             struck_ends: 0.5,

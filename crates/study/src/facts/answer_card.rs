@@ -5,7 +5,7 @@ use impactlab_core::units::Quantity;
 
 use crate::PredictMotionReport;
 use crate::analysis::PlaceChance;
-use crate::facts::answer::place_at;
+use crate::facts::answer::{name_of, place_at};
 use crate::facts::held::measurement_of;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::measured::{HeldIntervals, Measured};
@@ -76,8 +76,12 @@ impl PredictMotionReport {
             return Term::LanesNotCounted.into();
         }
         let named = |term: Term, place: &PlaceChance, share: f64| {
-            let name = Value::Text(place.name.clone());
-            words(vec![term.into(), name, Term::WithChance.into(), self.place_chance(share)])
+            words(vec![
+                term.into(),
+                name_of(place),
+                Term::WithChance.into(),
+                self.place_chance(share),
+            ])
         };
         let [struck, striking] = self.entered_places();
         let struck = struck

@@ -7,6 +7,7 @@ use impactlab_networks::response::LEAST_MOTIONS;
 use crate::analysis::{
     ContactsOutcome, MonteCarloError, MotionOutcome, PlaceChance, RestOutcome, Rival, RivalForce,
 };
+use crate::facts::answer::name_of;
 use crate::facts::both_vehicles::course_table;
 use crate::facts::held::held_intervals;
 use crate::facts::simulate::sensitivity;
@@ -63,7 +64,7 @@ impl PredictMotionReport {
                 place.striking_enters,
                 place.striking_ends,
             ];
-            Fact::row(Value::Text(place.name.clone()), shares.map(chance).to_vec())
+            Fact::row(name_of(place), shares.map(chance).to_vec())
         };
         FactTable::new(Term::PlacesOfSite, self.places.iter().map(row).collect())
             .with_rows(Term::PlaceOfSite)

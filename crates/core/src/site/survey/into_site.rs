@@ -156,7 +156,7 @@ impl Site {
                 let friction = property("friction").trim().replace(',', ".").parse::<f64>().ok();
                 let friction = friction
                     .ok_or_else(|| wrong(path, thing.line, &"has a friction that is no number"))?;
-                let name = if name.is_empty() { "friction zone".to_owned() } else { name };
+                let name = if name.is_empty() { FrictionZone::UNNAMED.to_owned() } else { name };
                 let zone = FrictionZone { name, border_m: at_m, friction };
                 zone.check()
                     .map_err(|error| wrong(path, thing.line, &crate::error_chain(&error)))?;

@@ -27,7 +27,7 @@ pub(super) fn zone_rows(zones: &[FrictionZone], wording: &Wording) -> Vec<InputR
         ];
         InputRow {
             group: words.friction_zones.to_owned(),
-            label: zone.name.clone(),
+            label: wording.given_name(&zone.name),
             value: fill(words.zone_value, &values),
             class: InputClass::Given,
             source: words.source_file.to_owned(),

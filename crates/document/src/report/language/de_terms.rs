@@ -884,3 +884,13 @@ pub(super) const TEMPLATES: &[(&str, &str)] = &[
     ("triangle of {}", "Dreieck über {}"),
     ("square of {}", "Rechteck über {}"),
 ];
+
+/// Names that the program gives where nobody gave one, without the numbers behind them, with their German ones.
+pub(super) const GIVEN_NAMES: &[(&str, &str)] = &[
+    ("atlas", "Atlas"),
+    ("base", "Grundfall"),
+    ("friction zone", "Reibwertzone"),
+    ("kerb", "Bordstein"),
+    ("lane", "Fahrstreifen"),
+    ("untitled", "ohne Titel"),
+];

@@ -36,6 +36,21 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
     })
 }
 
+/// A name that the program gave where nobody gave one, such as “base 2” of a variant, in a language; `None` for
+/// any other.
+pub(in crate::report) fn given_name_of(language: Language, name: &str) -> Option<String> {
+    let is_english = language == Language::En;
+    let known = |name: &str| {
+        let mut names = de_terms::GIVEN_NAMES.iter().filter(|_| !is_english);
+        names.find(|(english, _)| *english == name).map(|(_, german)| (*german).to_owned())
+    };
+    known(name).or_else(|| {
+        let (before, number) = name.rsplit_once(' ')?;
+        number.parse::<usize>().ok()?;
+        Some(format!("{} {number}", known(before)?))
+    })
+}
+
 /// A rule, and its source in the brackets behind it.
 fn rule_with_source(text: &str) -> Option<(&str, &str)> {
     let inner = text.strip_suffix(')')?;
@@ -117,6 +132,16 @@ mod tests {
         assert_eq!(["a) b)", "a(b)", "a (b"].map(rule_with_source), [None; 3]);
         // Each bracket of a name that was tried as that of a source doubled the work.
         assert_eq!(phrase_of(Language::De, &format!("qqq{}", " (qq)".repeat(60))), None);
+    }
+
+    /// Lanes without a name and the first variant of a case were English in a German report.
+    #[test]
+    fn a_name_of_the_program_is_translated_and_one_of_a_person_stays() {
+        let german = |name: &str| given_name_of(Language::De, name);
+        assert_eq!(german("lane 12").as_deref(), Some("Fahrstreifen 12"));
+        assert_eq!(german("base").as_deref(), Some("Grundfall"));
+        assert_eq!(["oncoming lane 1", "base b"].map(german), [None, None]);
+        assert_eq!(given_name_of(Language::En, "base"), None);
     }
 
     #[test]

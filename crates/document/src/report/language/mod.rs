@@ -14,5 +14,5 @@ mod de_training;
 
 mod look_up;
 
-pub(super) use look_up::{phrase_of, words_of};
+pub(super) use look_up::{given_name_of, phrase_of, words_of};
 pub(super) use words::Words;
