@@ -269,7 +269,7 @@ pub(super) mod tests {
         assert!(!report.outcome.stands(report.rest.as_ref()));
         let names = names(&report);
         assert!(!names.iter().any(|name| name.contains("vehicle ends on")), "{names:?}");
-        let expected = "the struck vehicle, still moving, is last on other lane";
+        let expected = "the struck vehicle is last on other lane";
         assert!(names.iter().any(|name| name == expected), "{names:?}");
     }
 }

@@ -92,10 +92,8 @@ terms! {
     StrikingComesOver: "the striking vehicle comes over", "das stoßende Fahrzeug gerät auf";
     StruckEndsOver: "the struck vehicle ends on", "das gestoßene Fahrzeug endet auf";
     StrikingEndsOver: "the striking vehicle ends on", "das stoßende Fahrzeug endet auf";
-    StruckIsOver: "the struck vehicle, still moving, is last on",
-        "das gestoßene Fahrzeug, noch in Bewegung, ist zuletzt auf";
-    StrikingIsOver: "the striking vehicle, still moving, is last on",
-        "das stoßende Fahrzeug, noch in Bewegung, ist zuletzt auf";
+    StruckIsOver: "the struck vehicle is last on", "das gestoßene Fahrzeug ist zuletzt auf";
+    StrikingIsOver: "the striking vehicle is last on", "das stoßende Fahrzeug ist zuletzt auf";
     MovedFirstBy: "the force of the first contact is that of", "die Kraft des ersten Kontakts folgt";
     ForceNetwork: "the force network", "dem Kraftnetz";
     MomentumSolution: "the momentum solution", "der Impulslösung";

@@ -134,7 +134,7 @@ const EN: OpinionWords = OpinionWords {
     lower_bounds: "Since less than 95 % of the draws come to rest in that time, upper ends of times and distances are \
         lower bounds.",
     at_rest: "It is at rest {time} after the first contact.",
-    still_moves: "{time} after the first contact it still moves, at {speed} in the mean.",
+    still_moves: "{time} after the first contact it still has {speed} in the mean of the draws.",
     end_hinges: "Of the estimates of vehicle and road, the end depends most on: {hinges}.",
     no_hinge: "No single estimate of vehicle or road decides 10 % or more of the variance of place or heading at the \
         end; the rest is the force, the contact and the drivers.",
@@ -218,7 +218,7 @@ const DE: OpinionWords = OpinionWords {
     lower_bounds: "Da in dieser Zeit weniger als 95 % der Ziehungen zum Stillstand kommen, sind die oberen Enden von \
         Zeiten und Wegen untere Schranken.",
     at_rest: "{time} nach dem ersten Kontakt steht es still.",
-    still_moves: "{time} nach dem ersten Kontakt bewegt es sich noch, im Mittel mit {speed}.",
+    still_moves: "{time} nach dem ersten Kontakt hat es im Mittel der Ziehungen noch {speed}.",
     end_hinges: "Von den Schätzwerten für Fahrzeug und Fahrbahn bestimmen das Ende vor allem: {hinges}.",
     no_hinge: "Kein Schätzwert für Fahrzeug oder Fahrbahn bestimmt 10 % oder mehr der Varianz von Ort oder Winkel \
         am Ende; das Übrige sind Kraft, Kontakt und Fahrer.",
