@@ -50,16 +50,28 @@ pub(super) fn of_particles(particles: &Particles) -> Vec<Caveat> {
 
 /// That the particles are those of evidence with larger standard deviations.
 fn weakened(particles: &Particles) -> Caveat {
+    let answer = match particles.ess < LEAST_ESS_FOR_INTERVALS {
+        true => Phrase::new(
+            "no intervals are given, and the medians are those of evidence whose standard deviations are {0} \
+             times as large as stated",
+            "Es werden keine Intervalle angegeben, und die Mediane sind die von Anknüpfungstatsachen mit dem \
+             {0}-Fachen der angegebenen Standardabweichungen",
+        ),
+        false => Phrase::new(
+            "intervals are those of evidence whose standard deviations are {0} times as large as stated, and \
+             wider than they need be",
+            "Die Intervalle sind die von Anknüpfungstatsachen mit dem {0}-Fachen der angegebenen \
+             Standardabweichungen und weiter als nötig",
+        ),
+    };
+    let answer = answer.with(PhraseValue::fixed(Quantity::Ratio, particles.sigma_factor(), 2));
     let text = Phrase::new(
-        "with the evidence as stated the sample is equivalent to {0} independent draws only: intervals are \
-         those of evidence whose standard deviations are {1} times as large as stated, and wider than they \
-         need be",
+        "with the evidence as stated the sample is equivalent to {0} independent draws only: {1}",
         "Mit den Anknüpfungstatsachen wie angegeben entspricht die Stichprobe nur {0} unabhängigen \
-         Ziehungen: Die Intervalle sind die von Anknüpfungstatsachen mit dem {1}-Fachen der angegebenen \
-         Standardabweichungen und weiter als nötig",
+         Ziehungen: {1}",
     )
     .with(PhraseValue::fixed(Quantity::Ratio, particles.posterior_ess, 0))
-    .with(PhraseValue::fixed(Quantity::Ratio, particles.sigma_factor(), 2));
+    .with(PhraseValue::phrase(answer));
     Caveat::new(CaveatKind::FewParticles, text)
         .with_value("effective sample size", particles.posterior_ess)
         .with_range([LEAST_ESS, f64::INFINITY])
