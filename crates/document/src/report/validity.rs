@@ -126,6 +126,8 @@ fn sentence(caveat: &Caveat, wording: &Wording) -> String {
             false => wording.local(&trimmed(significant(value))),
         };
         let range = match range {
+            // One course of events is the only number of them that raises no warning.
+            Some([Some(low), Some(high)]) if low == high => number(low),
             Some([Some(low), Some(high)]) => {
                 format!("{} {} {}", number(low), words.to, number(high))
             }
@@ -213,6 +215,15 @@ mod tests {
         };
         assert!(told(1e-6).ends_with("p of rest x: < 0.001, without restriction 0.05 to 1."));
         assert!(told(0.008_259).contains("p of rest x: 0.008,"), "{}", told(0.008_259));
+    }
+
+    /// “Courses of events: 5, without restriction 1 to 1” was told.
+    #[test]
+    fn a_range_of_one_number_is_told_as_that_number() {
+        let caveat = Caveat::new(CaveatKind::SeveralCourses, "several are possible");
+        let caveat = caveat.with_value("courses of events", 5.0).with_range([1.0, 1.0]);
+        let told = sentence(&caveat, &Wording::english(UnitSystem::Si));
+        assert!(told.ends_with("Courses of events: 5, without restriction 1."), "{told}");
     }
 
     /// “it still moves at 7.9 m/s … speed at the end: 7.914” said one thing twice.
