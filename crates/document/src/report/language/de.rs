@@ -25,7 +25,7 @@ pub(super) const WORDS: Words = Words {
     change_changed: "die Datei {path} wurde geändert",
     change_case: "die Falldatei {path} selbst wurde ohne das Programm bearbeitet",
     change_model: "das {network} „{name}“ ist ein anderes",
-    unanswered_notice: "{n} von {all} Fragen sind unbeantwortet; die Gründe stehen unten.",
+    unanswered_notice: "Unbeantwortete Fragen: {n} von {all}; die Gründe stehen unten.",
     no_answer: "Keine Antwort: {error}",
     no_answer_of: "{name}: keine Antwort: {error}",
     variant: "Variante: {name}",

@@ -24,7 +24,7 @@ pub(super) const WORDS: Words = Words {
     change_changed: "the file {path} has changed",
     change_case: "the case file {path} itself was edited without the program",
     change_model: "the {network} “{name}” is another one",
-    unanswered_notice: "{n} of {all} questions have no answer; why is said below.",
+    unanswered_notice: "Questions without an answer: {n} of {all}; why is said below.",
     no_answer: "No answer: {error}",
     no_answer_of: "{name}: no answer: {error}",
     variant: "Variant: {name}",

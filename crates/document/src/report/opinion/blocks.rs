@@ -55,18 +55,25 @@ pub(in crate::report) fn opinion_blocks(asked: Asked<'_>) -> Vec<Block> {
     blocks.extend(answers(&spoken, asked.wording));
     blocks.extend(courses(&spoken, asked.wording));
     blocks.extend(figures(&spoken, asked.wording));
-    blocks.push(Block::heading(2, words.how_sure));
-    blocks.extend(held(&spoken, asked.wording));
-    blocks.push(Block::heading(2, words.hinges));
-    blocks.push(hinges(&spoken));
-    blocks.push(Block::heading(2, words.warnings));
-    blocks.extend(warnings(asked.variants, asked.wording));
-    blocks.push(Block::heading(2, words.not_considered));
-    let methods = methods_of(&spoken);
-    let limit = |method: &Method| {
-        format!("{}: {}", method.name(asked.wording), method.limits(asked.wording))
-    };
-    blocks.push(Block::List { items: methods.iter().map(limit).collect() });
+    let is_given = !spoken.is_empty();
+    if is_given {
+        blocks.push(Block::heading(2, words.how_sure));
+        blocks.extend(held(&spoken, asked.wording));
+        blocks.push(Block::heading(2, words.hinges));
+        blocks.push(hinges(&spoken));
+    }
+    // Of questions without any answer the program has nothing to warn of.
+    if asked.variants.iter().any(|variant| parts_of(variant).next().is_some()) {
+        blocks.push(Block::heading(2, words.warnings));
+        blocks.extend(warnings(asked.variants, asked.wording));
+    }
+    if is_given {
+        blocks.push(Block::heading(2, words.not_considered));
+        let limit = |method: &Method| {
+            format!("{}: {}", method.name(asked.wording), method.limits(asked.wording))
+        };
+        blocks.push(Block::List { items: methods_of(&spoken).iter().map(limit).collect() });
+    }
     blocks.push(Block::heading(2, words.who));
     blocks.extend(who(asked));
     blocks
@@ -332,6 +339,7 @@ mod tests {
     use super::*;
     use crate::report::Language;
     use impactlab_core::units::UnitSystem;
+    use impactlab_study::case_file::Variant;
 
     /// Which of two forecasts of a variant an answer was of stood nowhere, and the figures were those of the
     /// first.
@@ -359,6 +367,25 @@ mod tests {
         assert!(told.contains("a (1)") && told.contains("a (2)"), "{told}");
         let told = format!("{:?}", figures(&spoken, &wording));
         assert!(told.contains("1 m") && told.contains("2 m"), "{told}");
+    }
+
+    /// “The program warns of nothing” stood in the opinion of a question without an answer, between empty lists.
+    #[test]
+    fn of_a_question_without_an_answer_no_more_is_said_than_that() {
+        let answers = vec![Err("there is no such file".to_owned())];
+        let variants = [VariantParts { name: "a".to_owned(), notes: String::new(), answers }];
+        let case = CaseFile::new("case", Variant { name: "a".to_owned(), ..Variant::default() });
+        let (wording, paths) = (Wording::english(UnitSystem::Si), ShownPaths::default());
+        let asked = Asked {
+            case: &case,
+            on_disk: None,
+            variants: &variants,
+            wording: &wording,
+            paths: &paths,
+        };
+        let told = format!("{:?}", opinion_blocks(asked));
+        assert!(told.contains("No answer of the case") && told.contains("Expert"), "{told}");
+        assert!(!told.contains("warns of nothing") && !told.contains("not considered"), "{told}");
     }
 
     /// “agree: each lies in the 90 % intervals of the other” stood three times in one row.

@@ -77,7 +77,7 @@ pub(super) fn opinion_words(language: Language) -> &'static OpinionWords {
 const EN: OpinionWords = OpinionWords {
     question_and_answer: "Question and answer",
     of_variant: "Variant “{name}”: {answer}",
-    nothing_to_say: "The case asks nothing that an opinion could be given on; its answers are in section 1.",
+    nothing_to_say: "No answer of the case allows an opinion; what there is stands in section 1.",
     courses: "Courses of events",
     course: "What becomes of the struck vehicle",
     probability: "Probability",
@@ -159,8 +159,7 @@ const EN: OpinionWords = OpinionWords {
 const DE: OpinionWords = OpinionWords {
     question_and_answer: "Beweisfrage und Antwort",
     of_variant: "Variante „{name}“: {answer}",
-    nothing_to_say: "Der Fall stellt keine Frage, zu der ein Gutachten möglich ist; seine Antworten stehen in \
-        Abschnitt 1.",
+    nothing_to_say: "Keine Antwort des Falls trägt ein Gutachten; was vorliegt, steht in Abschnitt 1.",
     courses: "Mögliche Geschehensabläufe",
     course: "Verbleib des gestoßenen Fahrzeugs",
     probability: "Wahrscheinlichkeit",
