@@ -190,11 +190,11 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
 /// The title of the figures, which says what stands in brackets.
 fn figures_title(spoken: &[Spoken<'_>], words: &OpinionWords) -> &'static str {
     // What a simulation varies is less than what a forecast does not know, and an impact varies nothing.
+    if vary_nothing(spoken, words) {
+        return words.figures_of_impact;
+    }
     if are_all(spoken, Rank::Simulation) {
         return words.figures_of_simulation;
-    }
-    if are_all(spoken, Rank::Impact) {
-        return words.figures_of_impact;
     }
     let mut figures = spoken.iter().flat_map(Spoken::opinions).flat_map(|of| &of.figures);
     // Few particles of a reconstruction allow medians alone.
@@ -205,6 +205,13 @@ fn figures_title(spoken: &[Spoken<'_>], words: &OpinionWords) -> &'static str {
         true => words.figures_in_doubt,
         false => words.figures,
     }
+}
+
+/// Whether the answers are those of impacts, or of motions of which no vehicles were drawn.
+fn vary_nothing(spoken: &[Spoken<'_>], words: &OpinionWords) -> bool {
+    let mut figures = spoken.iter().flat_map(Spoken::opinions).flat_map(|of| &of.figures);
+    let is_drawn = figures.any(|[name, _]| name.ends_with(words.over_draws));
+    are_all(spoken, Rank::Impact) || (are_all(spoken, Rank::Simulation) && !is_drawn)
 }
 
 /// Whether all answers are of one rank.
@@ -226,7 +233,7 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let is_doubtful = |it: &&Spoken<'_>| it.opinions().any(|of| of.is_doubtful);
     let doubtful: Vec<&str> = spoken.iter().filter(is_doubtful).map(|it| &*it.name).collect();
     if !is_counted && doubtful.len() < spoken.len() {
-        blocks.push(Block::paragraph(match are_all(spoken, Rank::Impact) {
+        blocks.push(Block::paragraph(match vary_nothing(spoken, words) {
             true => wording.words.no_intervals,
             false => words.not_counted,
         }));
@@ -440,7 +447,7 @@ mod tests {
                 question: "How does it move?".to_owned(),
                 answer: "1 m".to_owned(),
                 courses: Vec::new(),
-                figures: Vec::new(),
+                figures: vec![["distance, over the drawn vehicles".to_owned(), "1 m".to_owned()]],
                 held,
                 is_doubtful,
                 hinges: Vec::new(),
@@ -478,9 +485,15 @@ mod tests {
 
     /// “In brackets the interval that holds with a probability of 90 %” stood above components along x and y.
     #[test]
-    fn figures_of_an_impact_have_no_intervals_and_say_so() {
+    fn figures_of_what_varies_nothing_have_no_intervals_and_say_so() {
+        for rank in [Rank::Impact, Rank::Simulation] {
+            no_intervals_are_told_of(rank);
+        }
+    }
+
+    fn no_intervals_are_told_of(rank: Rank) {
         let opinion = PartOpinion {
-            rank: Rank::Impact,
+            rank,
             question: "Which impulse?".to_owned(),
             answer: "2 kN s".to_owned(),
             courses: Vec::new(),
