@@ -200,11 +200,6 @@ impl NumberFormat {
         self.local(&text)
     }
 
-    /// A standard error of a share of one, which is never nothing.
-    pub fn share_error(&self, error: f64) -> String {
-        self.local(&percent_up(error))
-    }
-
     /// Size and components of a vector, such as `3.026 kN s (x 1.124, y 2.810)`.
     pub fn vector(&self, quantity: Quantity, [x, y]: [f64; 2], names: [&str; 2]) -> String {
         let unit = quantity.display_unit(self.units);

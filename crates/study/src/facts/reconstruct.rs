@@ -119,13 +119,12 @@ impl ReconstructReport {
             let speed = speed.map(|of| Value::drawn(of.quantity(), &of.estimate));
             // All particles of one course do not make it certain.
             let values = vec![
-                Value::Chance(mode.probability, None),
-                Value::ShareError(mode.standard_error),
+                Value::Chance(mode.probability, Some(mode.standard_error)),
                 speed.unwrap_or_else(|| Value::Text(String::new())),
             ];
             Fact::row(Value::Phrase(mode.name.clone()), values)
         };
-        let columns = [Term::Probability, Term::StandardError, self.asked_car()];
+        let columns = [Term::Probability, self.asked_car()];
         let rows = self.modes.iter().map(row).collect();
         let table = FactTable::new(Term::Courses, rows).with_rows(Term::Course);
         table.with_levels(PREDICTED).with_columns(&columns)

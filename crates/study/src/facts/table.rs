@@ -30,8 +30,6 @@ pub enum Value {
     /// A probability, with its standard error where it comes from draws. It is never written as
     /// certain.
     Chance(f64, Option<f64>),
-    /// Standard error of a share of 1, written in per cent and never as nothing.
-    ShareError(f64),
     /// A share of a number of draws.
     ShareOfDraws(f64, usize),
     /// A probability that may be small: three decimals, and never written as nothing.

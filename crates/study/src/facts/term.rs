@@ -389,7 +389,6 @@ terms! {
     Courses: "Courses of events that the evidence leaves possible",
         "Geschehensabläufe, die nach den Spuren möglich bleiben";
     IfThis: "If this happened", "Wenn es so war";
-    StandardError: "standard error", "Standardfehler", "By the number of particles";
     StruckCar: "struck car", "gestoßenes Fzg.", "Its speed before the impact";
     StrikingCar: "striking car", "stoßendes Fzg.", "Its speed before the impact";
     SingleCar: "car", "Fahrzeug", "Its speed at the start";

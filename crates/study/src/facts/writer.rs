@@ -64,7 +64,6 @@ impl FactWriter<'_> {
                 Language::De => format!("{n} von {all}"),
             },
             Value::Share(share) => format.percent(*share),
-            Value::ShareError(error) => format.share_error(*error),
             Value::Chance(chance, error) => format.chance(*chance, *error),
             Value::ShareOfDraws(share, n) => match format.language {
                 Language::En => format!("{} of {n} draws", format.percent(*share)),

@@ -190,7 +190,7 @@ pub(super) const WORDS: Words = Words {
         ändert, wenn eine Größe um so viel größer ist, unter Berücksichtigung der Spuren; ± ist der \
         Standardfehler der Geraden. Der Reibbeiwert der Fahrbahn steht immer dort, andere Größen, wo die \
         Gerade mehr als Zufall ist.",
-    modes_text: "Der Standardfehler ist der aus der Zahl der Partikel. Geschehensabläufe unter 1 % fehlen.",
+    modes_text: "± ist der Standardfehler aus der Zahl der Partikel. Geschehensabläufe unter 1 % fehlen.",
     no_evidence: "Keine Frage dieses Falls beruht auf vorgefundenen Spuren: es gibt nichts anzupassen.",
     mark_value: "{n} Punkte von {first} bis {last}, je ± {sigma}",
     marks_computed_text: "Ein Rad zeichnet, wo es blockiert ist oder um mehr als {slip} seitlich rutscht, bei mehr \

@@ -182,7 +182,7 @@ pub(super) const WORDS: Words = Words {
     hinges_text: "A line through the particles by least squares says by how much a speed moves on the average \
         if one quantity is larger by so much, given the evidence; ± is the standard error of the line. The \
         friction of the road always stands there, others where the line is clear of chance.",
-    modes_text: "The standard error is that of the number of particles. Courses of less than 1 % are left \
+    modes_text: "± is the standard error by the number of particles. Courses of less than 1 % are left \
         out.",
     no_evidence: "No question of this case rests on evidence that was found: there is nothing to fit.",
     mark_value: "{n} points from {first} to {last}, each ± {sigma}",

@@ -133,10 +133,8 @@ pub(in crate::report) fn opinion_of_reconstruction(
 fn courses_of(report: &ReconstructReport, speed: &str, context: Context<'_>) -> Vec<[String; 2]> {
     let table = FactTable { levels: &[], ..report.course_table() };
     let rows = with_writer(context, |writer| table.to_text(writer).rows);
-    let format = &**context.wording;
-    let told = rows.into_iter().zip(&report.modes).filter_map(|(row, mode)| {
-        let [name, _, _, value] = <[String; 4]>::try_from(row.cells).ok()?;
-        let chance = format.chance(mode.probability, Some(mode.standard_error));
+    let told = rows.into_iter().filter_map(|row| {
+        let [name, chance, value] = <[String; 3]>::try_from(row.cells).ok()?;
         Some([name, format!("{chance}; {speed}: {value}")])
     });
     told.collect()
