@@ -427,10 +427,20 @@ fn check(scenario: &ForceScenario) -> Result<(), ForceError> {
     let checks = [
         ("mass of the struck vehicle [kg]", struck, within(struck, 1.0, 1e8), "1 to 1e8"),
         ("mass of the striking vehicle [kg]", striking, within(striking, 1.0, 1e8), "1 to 1e8"),
-        ("v_bx − v_tx [m/s]", vx, within(vx, -150.0, 150.0), "-150 to 150"),
-        ("v_by − v_ty [m/s]", vy, within(vy, -150.0, 150.0), "-150 to 150"),
         (
-            "θ_b [rad]",
+            "speed of the striking over the struck vehicle, along [m/s]",
+            vx,
+            within(vx, -150.0, 150.0),
+            "-150 to 150",
+        ),
+        (
+            "speed of the striking over the struck vehicle, across [m/s]",
+            vy,
+            within(vy, -150.0, 150.0),
+            "-150 to 150",
+        ),
+        (
+            "heading of the striking vehicle [rad]",
             scenario.theta_b_rad,
             within(scenario.theta_b_rad, -std::f64::consts::PI, std::f64::consts::PI),
             "-π to π",

@@ -538,9 +538,15 @@ pub(super) const TERMS: &[(&str, &str)] = &[
         "contact normal from across the struck vehicle",
         "Kontaktnormale gegen die Querrichtung des gestoßenen Fahrzeugs",
     ),
-    ("v_bx − v_tx", "v_bx − v_tx"),
-    ("v_by − v_ty", "v_by − v_ty"),
-    ("θ_b", "θ_b"),
+    (
+        "speed of the striking over the struck vehicle, along",
+        "Geschwindigkeit des stoßenden gegenüber dem gestoßenen Fahrzeug, längs",
+    ),
+    (
+        "speed of the striking over the struck vehicle, across",
+        "Geschwindigkeit des stoßenden gegenüber dem gestoßenen Fahrzeug, quer",
+    ),
+    ("heading of the striking vehicle", "Gierwinkel des stoßenden Fahrzeugs"),
     ("load of the front axle", "Last der Vorderachse"),
     ("load of the rear axle", "Last der Hinterachse"),
     ("track", "Spurweite"),

@@ -13,9 +13,9 @@ use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO + N_TURNING] = [
     "mass of the struck vehicle [kg]",
     "mass of the striking vehicle [kg]",
-    "v_bx − v_tx [m/s]",
-    "v_by − v_ty [m/s]",
-    "θ_b [rad]",
+    "speed of the striking over the struck vehicle, along [m/s]",
+    "speed of the striking over the struck vehicle, across [m/s]",
+    "heading of the striking vehicle [rad]",
     "contact x [m]",
     "yaw rate of the struck vehicle before the impact [rad/s]",
     "yaw rate of the striking vehicle before the impact [rad/s]",
@@ -79,7 +79,7 @@ impl OutsideTraining {
         .with(PhraseValue::of_named(self.feature, self.value))
         .with(PhraseValue::of_named(self.feature, low))
         .with(PhraseValue::of_named(self.feature, high))
-        .with(PhraseValue::significant(Quantity::Ratio, self.deviations));
+        .with(PhraseValue::three_digits(Quantity::Ratio, self.deviations));
         Caveat::new(CaveatKind::OutsideDomain, text)
             .with_value(self.feature, self.value)
             .with_range(self.range)
