@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 
 use crate::report::language::phrase_of;
-use crate::report::numbers::Wording;
+use crate::report::numbers::{Wording, fill};
 use crate::report::{Block, Language, Table};
 use impactlab_core::bibliography as sources;
+use impactlab_core::units::Quantity;
 
 /// By what an answer is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,6 +29,15 @@ pub(super) enum Method {
     SingleCar,
     /// What a data sheet leaves open, by rule.
     DataSheet,
+}
+
+/// Closing speeds of the finite-element runs of slow PITs, lowest and highest, and highest of all runs, m/s.
+const CLOSING_SPEEDS_M_S: [f64; 3] = [0.8, 5.0, 12.0];
+
+/// A text on finite-element runs with their closing speeds in the units of the report.
+pub(super) fn with_speeds(text: &str, wording: &Wording) -> String {
+    let [slow, middle, fast] = CLOSING_SPEEDS_M_S.map(|si| wording.rough(Quantity::Speed, si));
+    fill(text, &[("slow", &slow), ("middle", &middle), ("fast", &fast)])
 }
 
 impl Method {
@@ -64,9 +74,9 @@ impl Method {
     }
 
     /// What is neglected and how far it holds.
-    pub fn limits(self, wording: &Wording) -> &'static str {
+    pub fn limits(self, wording: &Wording) -> String {
         let words = wording.words;
-        match self {
+        let text = match self {
             Self::Impact => words.limits_impact,
             Self::FourDof => words.limits_four_dof,
             Self::FourDofAlone => words.limits_four_dof_alone,
@@ -76,7 +86,8 @@ impl Method {
             Self::Reconstruction => words.limits_reconstruction,
             Self::SingleCar => words.limits_single_car,
             Self::DataSheet => words.limits_sheet,
-        }
+        };
+        with_speeds(text, wording)
     }
 
     /// Its sources as the program documents them.
@@ -240,6 +251,22 @@ mod tests {
         Method::SingleCar,
         Method::DataSheet,
     ];
+
+    /// “Close at 0.5 to 12 m/s” stood in a report whose speeds are in mph.
+    #[test]
+    fn closing_speeds_are_in_the_units_of_the_report() {
+        let told = |units| Method::ForceNetwork.limits(&Wording::english(units));
+        assert!(
+            told(UnitSystem::Si).contains("close at up to 43 km/h;"),
+            "{}",
+            told(UnitSystem::Si)
+        );
+        assert!(
+            told(UnitSystem::Us).contains("close at up to 27 mph;"),
+            "{}",
+            told(UnitSystem::Us)
+        );
+    }
 
     /// What a source is cited for stood in English in a German report.
     #[test]

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::report::method::Method;
+use crate::report::method::{Method, with_speeds};
 use crate::report::numbers::Wording;
 use crate::report::{Block, Column, Table};
 use impactlab_study::{Measured, Measurement, ValidationTable};
@@ -35,6 +35,7 @@ pub(super) fn validation_blocks(
         Method::SingleCar => words.validation_single_car,
         Method::DataSheet => words.validation_sheet,
     };
+    let text = with_speeds(text, wording);
     let captions: &[(Measured, &str)] = match method {
         Method::Impact => &[(Measured::Impact, words.table_impact)],
         Method::FourDof | Method::FourDofAlone => &[(Measured::FourDof, words.table_four_dof)],

@@ -326,7 +326,7 @@ pub(super) const WORDS: Words = Words {
         Mischung voraus, einmal an Trainingsfällen kalibriert. Außerhalb des Gelernten tritt die \
         Impulslösung mit ihren gemessenen Fehlern an seine Stelle.",
     limits_force: "Das mitgelieferte hat aus 349 simulierten Stößen gegen die Flanke einer von zwei Limousinen, zu einem Fünftel eines SUV, \
-        gelernt, mit Annäherung von 0,5 bis 12 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein. Welche \
+        gelernt, mit Annäherung bis {fast}; das absolute Kraftniveau kann um etwa 40 % falsch sein. Welche \
         dieser Karosserien getroffen wurde, ist ohne Angabe offen. Fahrzeuggröße, Stoßziffer und \
         Reibung zwischen ihnen kennt es nicht.",
     method_response: "Bewegungsnetz",
@@ -377,13 +377,13 @@ pub(super) const WORDS: Words = Words {
     other_networks: "Geantwortet haben andere Netze als die voreingestellten: {list}. Grenzen des Verfahrens und \
         Validierung in diesem Bericht sind die der voreingestellten, die mit dem Programm kommen: woraus sie gelernt \
         haben und wie gut sie waren. Über diese Netze sagen sie nichts: `impactlab evaluate` misst sie.",
-    validation_impact: "Gegen Finite-Elemente-Rechnungen mit Annäherung von 0,8 bis 5,0 m/s; bei höherer \
+    validation_impact: "Gegen Finite-Elemente-Rechnungen mit Annäherung von {slow} bis {middle}; bei höherer \
         Annäherungsgeschwindigkeit ist die Stoßziffer kleiner.",
     table_impact: "Fehler des Impulsvektors, Median (Mittel), %",
     validation_four_dof: "Gegen ein Mehrkörpermodell desselben Fahrzeugs über 4 s.",
     table_four_dof: "Abstand zur Referenzbahn",
-    validation_force: "Das mitgelieferte, gegen 25 Finite-Elemente-Rechnungen, die es nicht kennt, mit Annäherung von 0,8 bis 5 m/s; \
-        Intervalle von 50 % sind dort zu breit. Von 61 anderen, mit Annäherung bis 12 m/s, enthielten Intervalle von 90 % \
+    validation_force: "Das mitgelieferte, gegen 25 Finite-Elemente-Rechnungen, die es nicht kennt, mit Annäherung von \
+        {slow} bis {middle}; Intervalle von 50 % sind dort zu breit. Von 61 anderen, mit Annäherung bis {fast}, enthielten Intervalle von 90 % \
         89 % der Impulse, 87 % der größten Kräfte und 95 % der Dauern; der Fehler des Impulses war dort im Mittel 18 %, \
         im Median 13 %.",
     table_force: "Fehler, Median (Mittel), %",

@@ -317,7 +317,7 @@ pub(super) const WORDS: Words = Words {
         the whole curve as a mixture, calibrated once on training cases. Outside of what it \
         learned from, the momentum solution with its measured errors takes its place.",
     limits_force: "The shipped one learned from 349 simulated impacts against the flanks of two saloons and, in a fifth of them, an SUV, \
-        which close at 0.5 to 12 m/s; the absolute force level may be off by some 40 %. Which of these bodies was struck \
+        which close at up to {fast}; the absolute force level may be off by some 40 %. Which of these bodies was struck \
         is open unless it is said. It knows no size of the vehicles, no restitution and no friction between them.",
     method_response: "Response network",
     method_response_text: "Each step of the motion is one of the 4DOF model with a bounded acceleration added: \
@@ -362,13 +362,13 @@ pub(super) const WORDS: Words = Words {
     other_networks: "Answered by other networks than the default ones: {list}. Limits of the method and validation in \
         this report are of the default ones, which come with the program: what they learned from and how they did. \
         Of these networks they say nothing: `impactlab evaluate` measures them.",
-    validation_impact: "Against finite-element runs that close at 0.8 to 5.0 m/s; at higher closing speeds \
+    validation_impact: "Against finite-element runs that close at {slow} to {middle}; at higher closing speeds \
         restitution is smaller.",
     table_impact: "Error of the impulse vector, median (mean), %",
     validation_four_dof: "Against a multibody model of the same car over 4 s.",
     table_four_dof: "Distance from the reference path",
-    validation_force: "The shipped one, against 25 finite-element runs that it has not seen, which close at 0.8 to 5 m/s; intervals of \
-        50 % are too wide there. Of 61 others, which close at up to 12 m/s, intervals of 90 % held 89 % of the impulses, \
+    validation_force: "The shipped one, against 25 finite-element runs that it has not seen, which close at {slow} to \
+        {middle}; intervals of 50 % are too wide there. Of 61 others, which close at up to {fast}, intervals of 90 % held 89 % of the impulses, \
         87 % of the peaks and 95 % of the durations; it erred there by 18 % of the impulse in the mean, and by 13 % in \
         the median.",
     table_force: "Errors, median (mean), %",
