@@ -14,6 +14,7 @@ use crate::report::opinion::words::{OpinionWords, opinion_words};
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::own_file;
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedFile};
 
 /// What stands where a variant has nothing.
@@ -232,21 +233,21 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let is_counted = !blocks.is_empty();
     let is_doubtful = |it: &&Spoken<'_>| it.opinions().any(|of| of.is_doubtful);
     let doubtful: Vec<&str> = spoken.iter().filter(is_doubtful).map(|it| &*it.name).collect();
+    let is_outside = |it: &&Spoken<'_>| {
+        // Of the force alone it was counted outside of what its network has learned from, too.
+        let is_counted = |of: &PartOpinion| of.held.is_some() && of.rank != Rank::Force;
+        it.opinions().any(is_counted) && it.part.caveats.has(CaveatKind::OutsideDomain)
+    };
+    let outside: Vec<&str> = spoken.iter().filter(is_outside).map(|it| &*it.name).collect();
     if !is_counted && doubtful.len() < spoken.len() {
         blocks.push(Block::paragraph(match vary_nothing(spoken, words) {
             true => wording.words.no_intervals,
             false => words.not_counted,
         }));
     }
-    blocks.extend(match doubtful.len() {
-        0 => None,
-        n if n == spoken.len() => Some(Block::paragraph(words.counted_of_others)),
-        _ => {
-            let names = doubtful.join(", ");
-            let values = [("name", &*names), ("answer", words.counted_of_others)];
-            Some(Block::paragraph(fill(words.of_variant, &values)))
-        }
-    });
+    let n_all = spoken.len();
+    blocks.extend(said_of(&doubtful, n_all, words.counted_of_others, words));
+    blocks.extend(said_of(&outside, n_all, words.counted_inside, words));
     let known = if is_counted { words.known_error } else { words.known_error_uncounted };
     if is_counted && methods_of(spoken).contains(&Method::ContactLaw) {
         blocks.push(Block::paragraph(words.held_without_network));
@@ -254,6 +255,16 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let errors = [known, words.known_error_single_car, words.known_error_driven];
     blocks.extend(of_kinds(&methods_of(spoken), errors).map(Block::paragraph));
     blocks
+}
+
+/// A sentence on some of the variants, with their names unless it is on all of them; none if it is on none.
+fn said_of(names: &[&str], n_all: usize, sentence: &str, words: &OpinionWords) -> Option<Block> {
+    let text = match names.len() {
+        0 => return None,
+        n if n == n_all => sentence.to_owned(),
+        _ => fill(words.of_variant, &[("name", &names.join(", ")), ("answer", sentence)]),
+    };
+    Some(Block::paragraph(text))
 }
 
 /// What the answers hinge on, each sentence once.
@@ -342,209 +353,5 @@ fn who(asked: Asked<'_>) -> Vec<Block> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::report::Language;
-    use impactlab_core::units::UnitSystem;
-    use impactlab_study::case_file::Variant;
-
-    /// Which of two forecasts of a variant an answer was of stood nowhere, and the figures were those of the
-    /// first.
-    #[test]
-    fn each_of_two_forecasts_of_a_variant_has_its_name_and_its_figures() {
-        let forecast = |answer: &str| Part {
-            opinion: Some(PartOpinion {
-                rank: Rank::Forecast,
-                question: "Where does it go?".to_owned(),
-                answer: answer.to_owned(),
-                courses: Vec::new(),
-                figures: vec![["distance".to_owned(), answer.to_owned()]],
-                held: None,
-                is_doubtful: false,
-                hinges: Vec::new(),
-            }),
-            ..Part::default()
-        };
-        let forecasts = ["1 m", "2 m"].map(|answer| Ok(forecast(answer))).into();
-        let variant =
-            VariantParts { name: "a".to_owned(), notes: String::new(), answers: forecasts };
-        let (variants, wording) = ([variant], Wording::english(UnitSystem::Si));
-        let spoken = spoken(&variants);
-        let told = format!("{:?}", answers(&spoken, &wording));
-        assert!(told.contains("a (1)") && told.contains("a (2)"), "{told}");
-        let told = format!("{:?}", figures(&spoken, &wording));
-        assert!(told.contains("1 m") && told.contains("2 m"), "{told}");
-    }
-
-    /// “The program warns of nothing” stood in the opinion of a question without an answer, between empty lists.
-    #[test]
-    fn of_a_question_without_an_answer_no_more_is_said_than_that() {
-        let answers = vec![Err("there is no such file".to_owned())];
-        let variants = [VariantParts { name: "a".to_owned(), notes: String::new(), answers }];
-        let case = CaseFile::new("case", Variant { name: "a".to_owned(), ..Variant::default() });
-        let (wording, paths) = (Wording::english(UnitSystem::Si), ShownPaths::default());
-        let asked = Asked {
-            case: &case,
-            on_disk: None,
-            variants: &variants,
-            wording: &wording,
-            paths: &paths,
-        };
-        let told = format!("{:?}", opinion_blocks(asked));
-        assert!(told.contains("No answer of the case") && told.contains("Expert"), "{told}");
-        assert!(!told.contains("warns of nothing") && !told.contains("not considered"), "{told}");
-    }
-
-    /// “agree: each lies in the 90 % intervals of the other” stood three times in one row.
-    #[test]
-    fn a_figure_that_is_the_same_in_all_variants_is_told_once() {
-        let variant = |name: &str, path: &str| {
-            let row = |name: &str, value: &str| [name.to_owned(), value.to_owned()];
-            let opinion = PartOpinion {
-                rank: Rank::Forecast,
-                question: "Where does it go?".to_owned(),
-                answer: path.to_owned(),
-                courses: Vec::new(),
-                figures: vec![row("distance", path), row("the methods", "agree")],
-                held: None,
-                is_doubtful: false,
-                hinges: Vec::new(),
-            };
-            let part = Part { opinion: Some(opinion), ..Part::default() };
-            VariantParts { name: name.to_owned(), notes: String::new(), answers: vec![Ok(part)] }
-        };
-        let wording = Wording::english(UnitSystem::Si);
-        let told = |variants: &[VariantParts]| figures(&spoken(variants), &wording);
-        let both = told(&[variant("a", "1 m"), variant("b", "2 m")]);
-        let [Block::Table(table), text] = &both[..] else { panic!("{both:?}") };
-        assert!(table.rows.iter().all(|row| row[0] != "the methods"), "{table:?}");
-        let once = "The same in each of these variants: the methods: agree.";
-        assert_eq!(*text, Block::paragraph(once));
-        // One variant has them all in its table.
-        let one = told(&[variant("a", "1 m")]);
-        let [Block::Table(table)] = &one[..] else { panic!("{one:?}") };
-        assert_eq!(table.rows, [["distance", "1 m"], ["the methods", "agree"]]);
-    }
-
-    /// What the opinion says of how often intervals of an answer held.
-    ///
-    /// - `table`: what was counted.
-    fn told_of_held(rank: Rank, table: Option<Block>, methods: &[Method]) -> String {
-        told_of_variants([("a", false, table)], rank, methods)
-    }
-
-    /// The same of several variants.
-    ///
-    /// - `variants`: name, whether it is doubtful, and what was counted.
-    fn told_of_variants<const N: usize>(
-        variants: [(&str, bool, Option<Block>); N],
-        rank: Rank,
-        methods: &[Method],
-    ) -> String {
-        let variants = variants.map(|(name, is_doubtful, held)| {
-            let opinion = PartOpinion {
-                rank,
-                question: "How does it move?".to_owned(),
-                answer: "1 m".to_owned(),
-                courses: Vec::new(),
-                figures: vec![["distance, over the drawn vehicles".to_owned(), "1 m".to_owned()]],
-                held,
-                is_doubtful,
-                hinges: Vec::new(),
-            };
-            let methods = methods.iter().copied().collect();
-            let part = Part { opinion: Some(opinion), methods, ..Part::default() };
-            VariantParts { name: name.to_owned(), notes: String::new(), answers: vec![Ok(part)] }
-        });
-        format!("{:?}", held(&spoken(&variants), &Wording::english(UnitSystem::Si)))
-    }
-
-    /// “It was not counted” stood above an annex in which it was.
-    #[test]
-    fn what_was_counted_is_not_said_of_a_doubtful_answer() {
-        let table = || Some(Block::paragraph("19 of 20"));
-        let (rank, methods) = (Rank::Reconstruction, [Method::Reconstruction]);
-        let told = told_of_variants([("a", true, None)], rank, &methods);
-        assert!(
-            told.contains("says nothing of an answer") && !told.contains("not counted"),
-            "{told}"
-        );
-        let told = told_of_variants([("a", false, table()), ("b", true, None)], rank, &methods);
-        assert!(told.contains("19 of 20") && told.contains("“b”: How often"), "{told}");
-        let told = told_of_variants([("a", false, None), ("b", true, None)], rank, &methods);
-        assert!(told.contains("not counted") && told.contains("“b”: How often"), "{told}");
-    }
-
-    /// “The intervals were tried …; the bounds are those of 95 % confidence” stood below “it was not counted”.
-    #[test]
-    fn intervals_that_were_not_counted_are_not_said_to_have_been_tried() {
-        let told = told_of_held(Rank::Simulation, None, &[Method::Impact, Method::FourDof]);
-        assert!(told.contains("it was not counted"), "{told}");
-        assert!(!told.contains("were tried") && !told.contains("confidence"), "{told}");
-    }
-
-    /// “In brackets the interval that holds with a probability of 90 %” stood above components along x and y.
-    #[test]
-    fn figures_of_what_varies_nothing_have_no_intervals_and_say_so() {
-        for rank in [Rank::Impact, Rank::Simulation] {
-            no_intervals_are_told_of(rank);
-        }
-    }
-
-    fn no_intervals_are_told_of(rank: Rank) {
-        let opinion = PartOpinion {
-            rank,
-            question: "Which impulse?".to_owned(),
-            answer: "2 kN s".to_owned(),
-            courses: Vec::new(),
-            figures: vec![["impulse".to_owned(), "2 kN s (x 1, y 1.7)".to_owned()]],
-            held: None,
-            is_doubtful: false,
-            hinges: Vec::new(),
-        };
-        let part = Part { opinion: Some(opinion), ..Part::default() };
-        let (name, notes) = ("a".to_owned(), String::new());
-        let variants = [VariantParts { name, notes, answers: vec![Ok(part)] }];
-        let (spoken, wording) = (spoken(&variants), Wording::english(UnitSystem::Si));
-        let told = format!("{:?}", figures(&spoken, &wording));
-        assert!(told.contains("no intervals") && !told.contains("90 %"), "{told}");
-        let told = format!("{:?}", held(&spoken, &wording));
-        assert!(told.contains("have no interval") && !told.contains("not counted"), "{told}");
-    }
-
-    /// “In brackets the interval that holds with a probability of 90 %” stood above medians without any, and above
-    /// intervals of evidence that contradicts itself.
-    #[test]
-    fn figures_of_a_reconstruction_say_what_stands_in_brackets() {
-        let title = |value: &str, is_doubtful| {
-            let opinion = PartOpinion {
-                rank: Rank::Reconstruction,
-                question: "How fast?".to_owned(),
-                answer: value.to_owned(),
-                courses: Vec::new(),
-                figures: vec![["speed".to_owned(), value.to_owned()]],
-                held: None,
-                is_doubtful,
-                hinges: Vec::new(),
-            };
-            let part = Part { opinion: Some(opinion), ..Part::default() };
-            let (name, notes) = ("a".to_owned(), String::new());
-            let variants = [VariantParts { name, notes, answers: vec![Ok(part)] }];
-            figures_title(&spoken(&variants), opinion_words(Language::En))
-        };
-        assert!(title("67 (60 to 75) km/h", false).contains("probability of 90 %"));
-        assert!(title("67 (60 to 75) km/h", true).contains("as far as it can be relied on"));
-        assert_eq!(title("110 km/h", true), "Figures, which have no intervals");
-    }
-
-    /// Section 7 alone said that the pairs were computed without the force network.
-    #[test]
-    fn what_was_counted_without_the_force_network_is_said_to_be_so() {
-        let table = || Some(Block::paragraph("48 of 48"));
-        let with_contact = [Method::ResponseNetwork, Method::ContactLaw, Method::ForceNetwork];
-        let told = told_of_held(Rank::Forecast, table(), &with_contact);
-        assert!(told.contains("without the force network"), "{told}");
-        let told = told_of_held(Rank::Forecast, table(), &[Method::ResponseNetwork]);
-        assert!(!told.contains("without the force network"), "{told}");
-    }
-}
+#[path = "blocks_tests.rs"]
+mod tests;

@@ -25,6 +25,7 @@ pub(super) struct OpinionWords {
     pub how_sure: &'static str,
     pub not_counted: &'static str,
     pub counted_of_others: &'static str,
+    pub counted_inside: &'static str,
     pub known_error: &'static str,
     pub known_error_uncounted: &'static str,
     pub held_without_network: &'static str,
@@ -98,6 +99,7 @@ const EN: OpinionWords = OpinionWords {
     not_counted: "For answers of this kind it was not counted how often their intervals held.",
     counted_of_others: "How often intervals held when they were tried says nothing of an answer with the warnings of this \
         one.",
+    counted_inside: "The case lies outside the domain (section 6); for such cases it was not counted by itself.",
     known_error: "The intervals were tried on computed collisions whose outcome was known; the known errors are in \
         section 7. The method was not validated against real collisions. The bounds are those of 95 % \
         confidence.",
@@ -180,6 +182,8 @@ const DE: OpinionWords = OpinionWords {
     not_counted: "Für Antworten dieser Art wurde nicht gezählt, wie oft ihre Bereiche zutrafen.",
     counted_of_others: "Wie oft Bereiche zutrafen, als sie geprüft wurden, sagt nichts über eine Antwort mit den Warnungen \
         dieser.",
+    counted_inside: "Der Fall liegt außerhalb des Gültigkeitsbereichs (Abschnitt 6); für solche Fälle wurde nicht eigens \
+        gezählt.",
     known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
         Fehler stehen in Abschnitt 7. Das Verfahren ist nicht an realen Unfällen validiert. Die Grenzen gelten \
         mit einer Sicherheit von 95 %.",
