@@ -130,7 +130,7 @@ pub(in crate::cli) fn run(
     console.print(&written, |out| {
         writeln!(out, "{}: {}", shown_path(&args.out), document.title)?;
         if written.unanswered > 0 {
-            writeln!(out, "warning: {} questions have no answer", written.unanswered)?;
+            writeln!(out, "warning: questions without an answer: {}", written.unanswered)?;
         }
         report.changes.iter().try_for_each(|change| writeln!(out, "warning: {change}"))
     })?;
