@@ -13,8 +13,12 @@ use impactlab_core::vehicle::{
     WheelEffort,
 };
 use impactlab_networks::learning::{LearningError, TEST_SHARE, TrainingSet};
+use impactlab_networks::response::evaluate::{
+    ComparisonSettings, MotionModelKind, compare_on_unseen_cars,
+};
 use impactlab_networks::response::{
-    ResponseCase, ResponseModel, STEP_S, average_error_m, condition, rollout,
+    ResponseCase, ResponseModel, ResponseTrainingSet, STEP_S, TuningConfig, average_error_m,
+    condition, rollout,
 };
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::analysis::PulseSetup;
@@ -222,6 +226,29 @@ fn trajectories_of_a_car_narrow_its_bands_and_leave_other_cars_alone() {
     // The same trajectories say nothing twice.
     let again = condition(&conditioned, &set).unwrap_err();
     assert!(matches!(again, LearningError::NothingNew), "{again}");
+}
+
+/// Before, a network that knew the cars was trained once more and then said to have seen none of them.
+#[test]
+fn a_network_that_knows_cars_is_compared_on_new_ones_as_it_is() {
+    let model = shipped();
+    let mut config = model.config().clone();
+    config.tuning = TuningConfig { particles: 4, iterations: 2, ..config.tuning };
+    let settings = ComparisonSettings { config, trajectories: vec![1], n_choices: 1, seed: 0 };
+    let compare = |folder: &str| {
+        let name = folder.to_owned();
+        let set = ResponseTrainingSet { name, train: load(folder), test: Vec::new() };
+        compare_on_unseen_cars(&set, &model, &settings, &mut |_| ControlFlow::Continue(()))
+    };
+    let new = compare("datasets/trajectories-cars-held-out/car-005").expect("answers");
+    let mut asked: Vec<(MotionModelKind, usize)> =
+        new.expect("nothing cancels").models.iter().map(|of| (of.kind, of.trajectories)).collect();
+    asked.sort_by_key(|(kind, n)| (*n, *kind));
+    let [untuned, tuned, network] =
+        [MotionModelKind::Untuned, MotionModelKind::Tuned, MotionModelKind::Network];
+    assert_eq!(asked, [(untuned, 0), (network, 0), (tuned, 1), (network, 1)]);
+    let seen = compare("datasets/trajectories-fleet/van").unwrap_err();
+    assert!(matches!(seen, LearningError::SeenCar { .. }), "{seen}");
 }
 
 /// Two cars that meet anywhere, as the command line asks about them.

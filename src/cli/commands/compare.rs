@@ -21,7 +21,8 @@ pub(in crate::cli) struct CompareArgs {
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
     /// Ask about cars that the network has not seen: --data is a folder of data sets, one for each car,
-    /// and the numbers of trajectories are those of the car that the network is told
+    /// and the numbers of trajectories are those of the car that the network is told. A network that
+    /// knows how cars differ, such as `shipped`, is asked as it is about cars that are all new to it
     #[arg(long, requires = "model")]
     leave_one_car_out: bool,
     /// With --leave-one-car-out: a data set that is learned from beside; several if given again
@@ -36,7 +37,8 @@ pub(in crate::cli) struct CompareArgs {
     /// Seed of the split and of the first choice
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// A pre-trained response network: `shipped-pretrained` or a file; pre-trained here if not given
+    /// A pre-trained response network: `shipped-pretrained` or a file; pre-trained here if not given.
+    /// With --leave-one-car-out also one that knows how cars differ
     #[arg(long, value_name = "MODEL")]
     model: Option<ModelSource>,
     /// The struck vehicle: a preset or a file, instead of the data set's own
@@ -60,6 +62,8 @@ Examples:
   impactlab compare --data datasets/trajectories-pulse --trajectories 20 --choices 1 --json
   impactlab compare --leave-one-car-out --data datasets/trajectories-fleet \\
       --model shipped-pretrained --trajectories 1,5 --choices 1
+  impactlab compare --leave-one-car-out --data datasets/trajectories-cars-held-out \\
+      --model shipped --trajectories 1,5 --choices 1 --bad-cases leave-out
 
 Every model is fitted to the same trajectories and asked about the same others. The column of the
 paper holds what it printed, measured on other data.

@@ -94,6 +94,15 @@ pub enum LearningError {
         "the response network was not trained on a fleet of cars; it can be fine-tuned, not conditioned"
     )]
     NoPopulation,
+    /// A car that is to be new to the network is one that it has learned from.
+    #[error(
+        "{case}: the network has learned from this car; expected cars that are new to it, or a network \
+         that knows no cars, such as shipped-pretrained"
+    )]
+    SeenCar {
+        /// A trajectory of the car.
+        case: String,
+    },
     /// The network itself or a model file failed.
     #[error(transparent)]
     Network(#[from] NnError),

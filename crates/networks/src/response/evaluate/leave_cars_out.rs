@@ -4,6 +4,8 @@
 //! its strengths are distributed over cars is learned from the other parts, each predicted by the
 //! network that has not seen it. What is asked is a quarter of the trajectories of each car, which are
 //! never learned from; n of the others condition the network, and the 4DOF model is tuned on the same.
+//!
+//! A network that knows how cars differ is asked as it is, about cars that are all new to it.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -11,7 +13,7 @@ use std::ops::ControlFlow;
 use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
 use crate::response::evaluate::compare::{answers, clusters};
 use crate::response::evaluate::{ComparedCase, Comparison, ComparisonSettings, MotionModel};
-use crate::response::train::train_parts;
+use crate::response::train::{cars_of, train_parts};
 use crate::response::{
     ResponseCase, ResponseModel, ResponseTrainingSet, Tuning, UnseenCars, condition,
     learn_population,
@@ -22,63 +24,48 @@ use impactlab_core::jobs::{Progress, ProgressCallback};
 /// was broken off.
 ///
 /// - `set`: trajectories of several cars;
-/// - `start`: a pre-trained network.
+/// - `start`: a pre-trained network, from which one is trained for each part of the cars; or one that
+///   knows how cars differ, which is asked as it is.
 ///
 /// # Errors
-/// [`LearningError`].
+/// [`LearningError`], with [`LearningError::SeenCar`] of a car that a network which is asked as it is has
+/// learned from.
 pub fn compare_on_unseen_cars(
     set: &ResponseTrainingSet,
     start: &ResponseModel,
     settings: &ComparisonSettings,
     report: &mut ProgressCallback<'_>,
 ) -> Result<Option<Comparison>, LearningError> {
-    let training = TrainSettings::unsaved(settings.config.clone(), settings.seed);
     let is_broken = Cell::new(false);
     let mut tell = |done: f64, message: &str| {
         let flow = report(Progress::new((done * 1000.0) as u64, 1000, message));
         is_broken.set(is_broken.get() || flow.is_break());
         flow
     };
-    let mut on_progress = |progress: &TrainingReport| match progress {
-        TrainingReport::Epoch(epoch) => tell(0.8 * epoch.share_done(), "training on other cars"),
-        TrainingReport::Fit(_) => ControlFlow::Continue(()),
-    };
-    let parts = train_parts(start, set, &training, &mut on_progress)?;
+    let mut compared = ComparedCars { settings, test: Vec::new(), rows: Vec::new() };
+    match start.population() {
+        Some(population) => {
+            let is_seen = |case: &&ResponseCase| {
+                start.is_trained_on(case) || population.known(&case.vehicle).is_some()
+            };
+            if let Some(seen) = set.train.iter().find(is_seen) {
+                return Err(LearningError::SeenCar { case: seen.name.clone() });
+            }
+            compared.compare_each(start, &set.train, &mut tell)?;
+        }
+        None => compared.compare_parts(start, set, &mut tell)?,
+    }
     if is_broken.get() {
         return Ok(None);
-    }
-    let mut compared = ComparedCars { settings, test: Vec::new(), rows: Vec::new() };
-    for (number, part) in parts.iter().enumerate() {
-        let others = parts.iter().enumerate().filter(|(other, _)| *other != number);
-        let unseen: Vec<UnseenCars<'_>> = others.map(|(_, other)| other.unseen(set)).collect();
-        let is_learned = |case: &&ResponseCase| part.model.is_trained_on(case);
-        let train: Vec<ResponseCase> = set.train.iter().filter(is_learned).cloned().collect();
-        let mut model = part.model.copied()?;
-        let mut on_fit = |report: &TrainingReport| match report {
-            TrainingReport::Fit(_) => {
-                let share = f64::from(report.progress().fraction().unwrap_or(0.0));
-                let done = 0.8 + 0.2 * (number as f64 + share) / parts.len() as f64;
-                tell(done, "cars that were left out")
-            }
-            TrainingReport::Epoch(_) => ControlFlow::Continue(()),
-        };
-        learn_population(&mut model, &unseen, &train, &mut on_fit)?;
-        if is_broken.get() {
-            return Ok(None);
-        }
-        for cases in part.unseen(set).cars {
-            compared.compare(&model, &cases)?;
-        }
-        let done = 0.8 + 0.2 * (number + 1) as f64 / parts.len() as f64;
-        if tell(done, "cars that were left out").is_break() {
-            return Ok(None);
-        }
     }
     let ComparedCars { test, rows, .. } = compared;
     let test: Vec<&ResponseCase> = test.iter().collect();
     let clusters = clusters(&test, settings.seed);
     Ok(Some(Comparison::new(&set.name, settings, &test, &clusters, rows, &[])))
 }
+
+/// Receives the share that is done and what is being done, and may break off.
+type Tell<'a> = dyn FnMut(f64, &str) -> ControlFlow<()> + 'a;
 
 /// The answers of every model about cars that were left out.
 struct ComparedCars<'a> {
@@ -88,6 +75,75 @@ struct ComparedCars<'a> {
 }
 
 impl ComparedCars<'_> {
+    /// Asks a network that knows how cars differ about each car.
+    ///
+    /// - `tell`: receives the share that is done; what it returns may break off.
+    fn compare_each(
+        &mut self,
+        model: &ResponseModel,
+        cases: &[ResponseCase],
+        tell: &mut Tell<'_>,
+    ) -> Result<(), LearningError> {
+        let cars = cars_of(cases);
+        for (number, car) in cars.iter().enumerate() {
+            if tell(number as f64 / cars.len() as f64, "cars that are new to it").is_break() {
+                return Ok(());
+            }
+            let cases: Vec<&ResponseCase> = car.iter().filter_map(|idx| cases.get(*idx)).collect();
+            self.compare(model, &cases)?;
+        }
+        Ok(())
+    }
+
+    /// Trains a network for each part of the cars on those of the others, and asks it about the part.
+    ///
+    /// - `tell`: as above.
+    fn compare_parts(
+        &mut self,
+        start: &ResponseModel,
+        set: &ResponseTrainingSet,
+        tell: &mut Tell<'_>,
+    ) -> Result<(), LearningError> {
+        let training = TrainSettings::unsaved(self.settings.config.clone(), self.settings.seed);
+        let mut is_broken = false;
+        let mut on_progress = |progress: &TrainingReport| {
+            let TrainingReport::Epoch(epoch) = progress else { return ControlFlow::Continue(()) };
+            let flow = tell(0.8 * epoch.share_done(), "training on other cars");
+            is_broken |= flow.is_break();
+            flow
+        };
+        let parts = train_parts(start, set, &training, &mut on_progress)?;
+        if is_broken {
+            return Ok(());
+        }
+        for (number, part) in parts.iter().enumerate() {
+            let mut model = part.model.copied()?;
+            let others = parts.iter().enumerate().filter(|(other, _)| *other != number);
+            let unseen: Vec<UnseenCars<'_>> = others.map(|(_, other)| other.unseen(set)).collect();
+            let is_learned = |case: &&ResponseCase| part.model.is_trained_on(case);
+            let train: Vec<ResponseCase> = set.train.iter().filter(is_learned).cloned().collect();
+            let done = |share: f64| 0.8 + 0.2 * (number as f64 + share) / parts.len() as f64;
+            let mut on_fit = |report: &TrainingReport| {
+                let TrainingReport::Fit(_) = report else { return ControlFlow::Continue(()) };
+                let share = f64::from(report.progress().fraction().unwrap_or(0.0));
+                let flow = tell(done(share), "cars that were left out");
+                is_broken |= flow.is_break();
+                flow
+            };
+            learn_population(&mut model, &unseen, &train, &mut on_fit)?;
+            if is_broken {
+                return Ok(());
+            }
+            for cases in part.unseen(set).cars {
+                self.compare(&model, &cases)?;
+            }
+            if tell(done(1.0), "cars that were left out").is_break() {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
     /// Asks every model about a car.
     ///
     /// - `model`: that has not seen it.

@@ -185,7 +185,7 @@ fn parts_with_models(
 }
 
 /// The trajectories of each car, in the order in which the cars come first.
-pub(super) fn cars_of(cases: &[ResponseCase]) -> Vec<Vec<usize>> {
+pub(crate) fn cars_of(cases: &[ResponseCase]) -> Vec<Vec<usize>> {
     let mut cars: Vec<Vec<usize>> = Vec::new();
     for (idx, case) in cases.iter().enumerate() {
         let same = |car: &&mut Vec<usize>| {

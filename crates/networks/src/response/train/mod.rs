@@ -22,7 +22,7 @@ mod widths;
 mod stages;
 
 pub use case::{ResponseCase, ResponseCaseError};
-pub(crate) use fleet::train_parts;
+pub(crate) use fleet::{cars_of, train_parts};
 pub use fleet::{condition, train_fleet};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining};
 pub use simulated::ImpactRecord;

@@ -39,7 +39,8 @@ pub struct CompareRequest {
     /// A trajectory data set; a share of its cases is kept apart for the test. With
     /// [`CompareRequest::leave_one_car_out`] a folder of such sets, one for each car.
     pub data: PathBuf,
-    /// Whether each car is asked about that the network has not seen.
+    /// Whether each car is asked about that the network has not seen: a network that knows how cars
+    /// differ as it is, another trained on the other cars.
     #[serde(default)]
     pub leave_one_car_out: bool,
     /// With [`CompareRequest::leave_one_car_out`]: data sets that are learned from beside.
