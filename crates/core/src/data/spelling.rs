@@ -40,11 +40,10 @@ pub(crate) fn meaning(header: &str) -> Meaning {
         let Some(text) = unit_text(rest) else {
             return Meaning::Channel(channel, None);
         };
-        let key = checked_unit_key(text);
-        if let Some(unit) = key.as_ref().and_then(|key| unit_of_key(channel.quantity(), key)) {
+        if let Some(unit) = unit(channel.quantity(), text) {
             return Meaning::Channel(channel, Some(unit));
         }
-        if is_bracketed(rest) || key.is_some_and(|key| is_unit_key(&key)) {
+        if is_bracketed(rest) || is_unit(text) {
             wrong_unit.get_or_insert(Meaning::WrongUnit(channel, text.to_owned()));
         }
     }
@@ -150,7 +149,10 @@ pub(crate) fn suggestion(header: &str) -> Option<Channel> {
 
 /// The unit of `quantity` with this spelling; `None` if there is none.
 pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
-    unit_of_key(quantity, &checked_unit_key(text)?)
+    let letters: String = text.chars().filter(|c| c.is_alphabetic()).collect();
+    // A kilonewton is no knot.
+    let is_kilonewton = quantity == Quantity::Speed && ["kN", "KN"].contains(&letters.as_str());
+    unit_of_key(quantity, &checked_unit_key(text).filter(|_| !is_kilonewton)?)
 }
 
 /// The key of a text that may be a unit; `None` if it is too long or may be millinewtons.
@@ -171,6 +173,7 @@ fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
         (Quantity::Speed, "mps" | "ms1") => "ms",
         (Quantity::Speed, "kph" | "kmph") => "kmh",
         (Quantity::Speed, "fps") => "fts",
+        (Quantity::Speed, "kt" | "kts" | "kns" | "knot" | "knots") => "kn",
         (Quantity::Acceleration, "mss") => "ms2",
         (Quantity::Acceleration, "gs") => "g",
         (Quantity::AngularVelocity, "dps" | "degs1") => "degs",
@@ -268,11 +271,9 @@ fn is_bracketed(text: &str) -> bool {
 }
 
 fn is_unit(text: &str) -> bool {
-    checked_unit_key(text).is_some_and(|key| is_unit_key(&key))
-}
-
-fn is_unit_key(key: &str) -> bool {
-    Quantity::ALL.iter().any(|quantity| unit_of_key(*quantity, key).is_some())
+    let has_unit =
+        |key: String| Quantity::ALL.iter().any(|quantity| unit_of_key(*quantity, &key).is_some());
+    checked_unit_key(text).is_some_and(has_unit)
 }
 
 pub(crate) fn letters_and_digits(text: &str) -> String {
@@ -338,6 +339,10 @@ mod tests {
             ("Kraft X [kN]", Channel::Fx, "kN"),
             ("Fx [-]", Channel::Fx, ""),
             ("Fx [MN]", Channel::Fx, "MN"),
+            ("speed [kn]", Channel::Speed, "kn"),
+            ("Speed (Knots)", Channel::Speed, "kn"),
+            ("vx_kts", Channel::Vx, "kn"),
+            ("Fx [kn]", Channel::Fx, "kN"),
             ("xg", Channel::X, ""),
             ("x_g [m]", Channel::X, "m"),
         ] {
@@ -354,6 +359,8 @@ mod tests {
             ("Fx [mn]", Channel::Fx, "mn"),
             ("Mz [mNm]", Channel::Mz, "mNm"),
             ("fx_kg", Channel::Fx, "kg"),
+            ("speed [kN]", Channel::Speed, "kN"),
+            ("Fx [kts]", Channel::Fx, "kts"),
             ("time [furlong]", Channel::Time, "furlong"),
             ("steering_wheel [%]", Channel::SteeringWheel, "%"),
             ("Fx (%)", Channel::Fx, "%"),

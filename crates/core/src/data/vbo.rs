@@ -11,7 +11,7 @@
 
 use crate::data::Separator;
 use crate::data::dialect::Dialect;
-use crate::data::formats::{Converted, NAUTICAL_MILE_M, OF_COURSE, Said};
+use crate::data::formats::{Converted, OF_COURSE, Said};
 use crate::data::spelling;
 use crate::data::time_of_day::DAY_S;
 use crate::data::yaw_rate::{MOVING_M_S, tells_sides};
@@ -74,9 +74,6 @@ const KINDS: [(&[&str], &[&str]); 3] = [
     (&["wheelsp", "vehiclespeed"], &["km/h", "kmh", "kph", "m/s", "mph", "kn", "kt"]),
 ];
 
-/// Words for knots, which are turned into km/h.
-const KNOTS: [&str; 6] = ["knots", "knot", "kts", "kt", "kn", "kns"];
-
 /// A column of the file: its kind, and the name and unit that it gets.
 enum Column {
     Time,
@@ -91,8 +88,6 @@ enum Column {
 struct Velocity {
     /// The header of their column.
     name: String,
-    /// By what knots are multiplied; `None` for numbers that stay as they are.
-    km_h_per_knot: Option<f64>,
     /// Metres per second in the unit of the header; `None` if it is none that is known.
     unit_m_s: Option<f64>,
 }
@@ -193,10 +188,8 @@ pub(super) fn as_table(text: &str) -> Option<Converted> {
                     Some(90.0 - heading_deg)
                 }
                 (Some(Column::Velocity), Some(number)) => {
-                    let converted = velocity.km_h_per_knot.map(|factor| factor * number);
-                    let size = converted.unwrap_or(number).abs();
-                    speed_m_s = velocity.unit_m_s.map(|unit_m_s| size * unit_m_s);
-                    converted
+                    speed_m_s = velocity.unit_m_s.map(|unit_m_s| number.abs() * unit_m_s);
+                    None
                 }
                 _ => None,
             };
@@ -238,12 +231,9 @@ fn velocity<'a>(mut lines: impl Iterator<Item = &'a str>) -> Velocity {
         is_it.then(|| unit.trim().to_lowercase())
     });
     let word = word.filter(|word| !word.is_empty()).unwrap_or_else(|| "km/h".to_owned());
-    let is_knots = KNOTS.contains(&word.as_str());
-    let unit = if is_knots { "km/h" } else { word.as_str() };
-    let known = spelling::unit(Quantity::Speed, unit);
+    let known = spelling::unit(Quantity::Speed, &word);
     Velocity {
-        name: format!("vx [{}]", known.map_or(unit, |unit| unit.symbol)),
-        km_h_per_knot: is_knots.then_some(NAUTICAL_MILE_M / 1000.0),
+        name: format!("vx [{}]", known.map_or(word.as_str(), |unit| unit.symbol)),
         unit_m_s: known.map(|unit| unit.si_per_unit),
     }
 }
@@ -394,7 +384,7 @@ mod tests {
             ("velocity", ["vx [km/h]", "010.000"]),
             ("Velocity mph", ["vx [mph]", "010.000"]),
             ("velocity m/s", ["vx [m/s]", "010.000"]),
-            ("velocity knots", ["vx [km/h]", "18.52"]),
+            ("velocity knots", ["vx [kn]", "010.000"]),
             ("velocity furlongs", ["vx [furlongs]", "010.000"]),
             ("", ["vx [km/h]", "010.000"]),
         ] {

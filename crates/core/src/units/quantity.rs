@@ -13,6 +13,9 @@ pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 /// One mile per hour, m/s; exact by definition (international yard and pound agreement, 1959).
 pub const MILE_PER_HOUR_M_S: f64 = 0.447_04;
 
+/// One knot, m/s: an international nautical mile of 1852 m per hour.
+pub const KNOT_M_S: f64 = 1852.0 / 3600.0;
+
 /// One kilometre per hour, m/s.
 pub const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
 
@@ -191,7 +194,8 @@ impl Quantity {
             Self::Length => units!(Length: "m" = 1.0, "mm" = 1e-3, "cm" = 1e-2, "km" = 1e3,
                 "ft" = FOOT_M, "in" = INCH_M),
             Self::Speed => units!(Speed: "m/s" = 1.0, "mm/s" = 1e-3, "mm/ms" = 1.0,
-                "km/h" = KILOMETRE_PER_HOUR_M_S, "mph" = MILE_PER_HOUR_M_S, "ft/s" = FOOT_M),
+                "km/h" = KILOMETRE_PER_HOUR_M_S, "mph" = MILE_PER_HOUR_M_S, "ft/s" = FOOT_M,
+                "kn" = KNOT_M_S),
             Self::Acceleration => units!(Acceleration: "m/s²" = 1.0, "mm/s²" = 1e-3,
                 "g" = STANDARD_GRAVITY_M_S2, "ft/s²" = FOOT_M),
             Self::Angle => units!(Angle: "rad" = 1.0, "deg" = DEGREE_RAD),

@@ -33,7 +33,7 @@ pub enum TypedError {
 }
 
 /// What else a unit is called.
-const OTHER_NAMES: [(&str, &str); 24] = [
+const OTHER_NAMES: [(&str, &str); 28] = [
     ("°", "deg"),
     ("°/s", "deg/s"),
     ("degree", "deg"),
@@ -43,6 +43,10 @@ const OTHER_NAMES: [(&str, &str); 24] = [
     ("mps", "m/s"),
     ("mi/h", "mph"),
     ("fps", "ft/s"),
+    ("kt", "kn"),
+    ("kts", "kn"),
+    ("knot", "kn"),
+    ("knots", "kn"),
     ("'", "ft"),
     ("feet", "ft"),
     ("foot", "ft"),
@@ -173,9 +177,12 @@ fn is_called(symbol: &str, typed: &str) -> bool {
         let kept = text.to_lowercase().replace('²', "2");
         kept.chars().filter(|c| !c.is_whitespace() && !"·*^".contains(*c)).collect()
     };
+    // A kilonewton is no knot.
+    let is_kilonewton = symbol == "kn" && typed.contains('N') && plain(typed) == symbol;
     let typed = plain(typed);
     let other = OTHER_NAMES.iter().find(|(name, _)| *name == typed).map(|(_, symbol)| *symbol);
     !symbol.is_empty()
+        && !is_kilonewton
         && (plain(symbol) == typed || other.is_some_and(|other| plain(symbol) == plain(other)))
 }
 
@@ -202,9 +209,13 @@ mod tests {
             ("2.5e-1 m/s", 0.25),
             ("2e1", 20.0),
             ("12,5", 12.5),
+            ("36 kn", 18.52),
+            ("36 Knots", 18.52),
         ] {
             is(Quantity::Speed, text, expected);
         }
+        is(Quantity::Force, "36 kn", 36e3);
+        assert!(Quantity::Speed.parse("36 kN", &Quantity::Speed.si_unit()).is_err());
         is(Quantity::Angle, "30°", 30_f64.to_radians());
         is(Quantity::MomentOfInertia, "2 500 kgm2", 2500.0);
         is(

@@ -38,7 +38,7 @@ pub(super) use fem::OpenUnits;
 pub use fem::{DeckUnits, ModelStart};
 pub use nhtsa::{CrashTest, TestChannel, TestVehicle};
 pub use nhtsa_curves::{BarrierForce, BarrierMomentum};
-pub(super) use positions::{NAUTICAL_MILE_M, OF_COURSE};
+pub(super) use positions::OF_COURSE;
 pub use recorder::{
     RecordedControls, RecordedDeltaV, RecordedSide, RecordedSides, RecordedSpeed, RecorderRecord,
 };

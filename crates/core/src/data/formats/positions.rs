@@ -16,9 +16,7 @@ use std::path::Path;
 
 use crate::data::formats::{Converted, Said, chosen_part, number_text};
 use crate::data::{DataError, ReadSettings, Sheet};
-
-/// Metres in a nautical mile.
-pub(in crate::data) const NAUTICAL_MILE_M: f64 = 1852.0;
+use crate::units::KNOT_M_S;
 
 /// Lines at the beginning by which a log is known.
 const EXAMINED_LINES: usize = 40;
@@ -297,7 +295,7 @@ fn rmc(fields: &[&str]) -> Option<String> {
     let [_, time, status, lat, ns, lon, ew, knots, course, ..] = fields else { return None };
     let [time, lat, lon] = [clock(time)?, degrees(lat, ns, 2)?, degrees(lon, ew, 3)?];
     let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
-    let speed = number(knots).map(|knots| knots * NAUTICAL_MILE_M / 3600.0);
+    let speed = number(knots).map(|knots| knots * KNOT_M_S);
     // The direction of the way over ground; a receiver that stands has none.
     let yaw = number(course).map(|course| 90.0 - course);
     let [speed, yaw] = [speed, yaw].map(|number| number.map_or_else(String::new, number_text));
