@@ -54,10 +54,12 @@ impl ColumnChoice {
     }
 
     /// Chooses what the column holds. The unit of a channel is the one that the file states for it; a unit
-    /// that the user has chosen stays if it measures the channel.
+    /// that the user has chosen stays if it measures the channel. The sign is that which the header says.
     pub fn choose(&mut self, held: Option<Held>) {
         self.held = held;
-        let Some(quantity) = self.channel().map(Channel::quantity) else { return };
+        let Some(channel) = self.channel() else { return };
+        self.is_negated = self.proposal.is_turned(channel);
+        let quantity = channel.quantity();
         let stated = self.proposal.stated_unit(quantity).ok().flatten();
         let chosen = self.unit.filter(|unit| unit.quantity == quantity);
         self.unit = stated.or(chosen);

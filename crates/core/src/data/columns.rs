@@ -4,10 +4,11 @@
 use std::collections::BTreeMap;
 
 use crate::data::mapped_column::mapped_column;
+use crate::data::si_values::compass_quantity;
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Formula, Note, RESTRICTIONS_COLUMN,
-    SignedColumn, Table, clock, computed, letters,
+    RecordedSide, SignedColumn, Table, clock, computed, letters, stated_side,
 };
 use crate::units::{Quantity, Unit};
 
@@ -173,7 +174,8 @@ impl Columns {
             let name = name.clone();
             match meaning {
                 Meaning::Channel(channel, unit) if !is_mapped(channel) => {
-                    let column = column_use(channel, number, name, unit);
+                    let mut column = column_use(channel, number, name, unit);
+                    self.notes.extend(column.turn_by_side(map));
                     found.entry(channel).or_default().push(column);
                 }
                 Meaning::WrongUnit(channel, unit) if !is_mapped(channel) => {
@@ -307,6 +309,23 @@ pub(super) fn column_use(
 }
 
 impl ColumnUse {
+    /// Gives the numbers the sign that brings them to this program's side, if the header says to which they are positive,
+    /// and says so.
+    fn turn_by_side(&mut self, map: Option<&ColumnMap>) -> Option<Note> {
+        let side = stated_side::side_of(&self.name, self.channel)?;
+        let settings = map.map(|map| &map.settings);
+        let is_heading = compass_quantity(self.channel).is_some();
+        // What the map turns of all columns is not turned twice.
+        let is_turned = settings.is_some_and(|settings| settings.y_to_right)
+            != settings.is_some_and(|settings| settings.compass_headings && is_heading);
+        if (side == RecordedSide::Right) != is_turned {
+            self.terms.iter_mut().for_each(|term| term.sign = -1.0);
+        }
+        let (number, side) = (self.number, side.word());
+        let text = format!("column {number} {:?} is positive to the {side}, as it says", self.name);
+        Some(Note::Format { text })
+    }
+
     /// The column as a map names it, with the units of its terms where these differ.
     fn column_ref(&self) -> ColumnRef {
         let numbers = || self.terms.iter().map(|term| term.number).collect();
@@ -415,6 +434,8 @@ pub(super) fn meanings(table: &Table) -> Vec<Meaning> {
 /// the header has none. Where both say one and they differ, it is none that is known.
 fn column_meaning(table: &Table, column_idx: usize) -> Meaning {
     let name = table.header().get(column_idx).map_or("", String::as_str);
+    let bare = stated_side::bare_header(name);
+    let name = bare.as_deref().unwrap_or(name);
     let meaning = match spelling::meaning(name) {
         Meaning::Unknown => spelling::numbered_force(name).unwrap_or(Meaning::Unknown),
         meaning => meaning,

@@ -61,6 +61,7 @@ mod rows;
 mod series;
 mod si_values;
 mod spelling;
+mod stated_side;
 mod steering;
 mod table;
 mod text;

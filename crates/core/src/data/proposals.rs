@@ -6,8 +6,8 @@ use std::path::Path;
 use crate::data::columns::{is_summed, meanings, stated_unit, sum};
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FormulaPart, ReadSettings, Table,
-    clock, computed,
+    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, FormulaPart, ReadSettings,
+    RecordedSide, SignedColumn, Table, clock, computed, stated_side,
 };
 use crate::units::{Quantity, Unit};
 
@@ -49,6 +49,13 @@ impl ColumnProposal {
         let guessed =
             || self.guess.and_then(|(channel, unit)| unit.filter(|_| channel == Channel::Time));
         stated.or_else(|| first.and_then(clock::unit_since_1970)).or_else(guessed)
+    }
+
+    /// Whether the header says that its numbers are positive to the other side than those of this program.
+    ///
+    /// - `channel`: what the column holds.
+    pub fn is_turned(&self, channel: Channel) -> bool {
+        stated_side::side_of(&self.name, channel) == Some(RecordedSide::Right)
     }
 
     /// The channel that is worth a proposal in a dialog: the guess, or what words in the header
@@ -101,12 +108,18 @@ pub fn proposals(table: &Table) -> Vec<ColumnProposal> {
 /// hold are added up; any other channel that several columns may hold is left to be chosen.
 pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
     let mut by_channel: BTreeMap<Channel, Vec<(usize, Option<Unit>)>> = BTreeMap::new();
+    let mut turned = Vec::new();
     for proposal in proposals {
         if let Some((channel, unit)) = proposal.guess {
+            turned.extend(proposal.is_turned(channel).then_some(proposal.number));
             by_channel.entry(channel).or_default().push((proposal.number, unit));
         }
     }
     let choice = |(channel, columns): (Channel, Vec<(usize, Option<Unit>)>)| match columns[..] {
+        [(number, unit)] if turned.contains(&number) => {
+            let term = SignedColumn { number, is_negated: true, unit: None };
+            Some((channel, ColumnSource { column: ColumnRef::Sum(vec![term]), unit }))
+        }
         [(number, unit)] => {
             Some((channel, ColumnSource { column: ColumnRef::Number(number), unit }))
         }

@@ -148,3 +148,25 @@ fn numbers_that_stand_for_none_are_flagged_in_a_file() {
     let flags: Vec<String> = check_file(&loaded).iter().map(ToString::to_string).collect();
     assert!(flags.iter().any(|flag| flag.contains("the steer angle jumps by")), "{flags:?}");
 }
+
+/// A column that says to which side it is positive is turned by that, and by the axes of a map not once more.
+#[test]
+fn a_column_that_names_its_side_is_read_by_it() {
+    let (right, left) = (
+        "Steering wheel angle (right positive) [deg]",
+        "Steering wheel angle [deg] (left positive)",
+    );
+    for (name, map, expected_deg) in [
+        (right, "", -9.0),
+        (left, "", 9.0),
+        (right, "y_axis=right", -9.0),
+        (left, "y_axis=right", 9.0),
+        // A map says the sign itself.
+        (right, "steering_wheel=2:deg", 9.0),
+    ] {
+        let loaded = read(&format!("t [s];{name}\n0;0\n1;9\n"), map).unwrap();
+        let angle_deg = values(&loaded, Channel::SteeringWheel)[1].to_degrees();
+        assert!((angle_deg - expected_deg).abs() < 1e-9, "{name} {map}: {angle_deg}");
+        assert_eq!(is_said(&loaded, "as it says"), !map.contains('2'), "{name} {map}");
+    }
+}

@@ -88,7 +88,7 @@ pub(super) fn si_values(
 }
 
 /// What kind of heading a channel is, an angle or its rate; `None` if it is none.
-fn compass_quantity(channel: Channel) -> Option<Quantity> {
+pub(super) fn compass_quantity(channel: Channel) -> Option<Quantity> {
     use Channel::{StrikingYaw, StrikingYawRate, StruckYaw, StruckYawRate, Yaw, YawRate};
     let is_heading = matches!(
         channel,
@@ -99,7 +99,7 @@ fn compass_quantity(channel: Channel) -> Option<Quantity> {
 
 /// Whether a channel has the other sign in axes whose y points to the right and whose z points down
 /// (SAE J670). A roll is the same in both.
-fn changes_sign_with_y(channel: Channel) -> bool {
+pub(super) fn changes_sign_with_y(channel: Channel) -> bool {
     use Channel::{
         Ay, Fy, FyBody, Mz, Steer, SteerFl, SteerFr, SteeringWheel, StrikingVy, StrikingYaw,
         StrikingYawRate, StruckVy, StruckYaw, StruckYawRate, Vy, Y, Yaw, YawRate,

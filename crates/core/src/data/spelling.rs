@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use crate::data::Channel;
+use crate::data::stated_side::without_side;
 use crate::units::{Quantity, Unit};
 
 const OPENING: [char; 4] = ['[', '(', '{', '<'];
@@ -207,6 +208,8 @@ static UNITS: LazyLock<Vec<(Quantity, String, Unit)>> = LazyLock::new(|| {
 ///
 /// The error is the text of a unit in brackets that does not measure `quantity`.
 pub(crate) fn trailing_unit(header: &str, quantity: Quantity) -> Result<Option<Unit>, String> {
+    let bare = without_side(header).map(|(bare, _)| bare);
+    let header = bare.as_deref().unwrap_or(header);
     let mut wrong = None;
     for (at, _) in header.match_indices(|c: char| !c.is_alphanumeric()) {
         let (_, rest) = header.split_at(at);

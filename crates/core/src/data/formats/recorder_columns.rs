@@ -4,60 +4,12 @@ use crate::data::error::quoted;
 use crate::data::formats::cdr::number;
 use crate::data::formats::recorder::RecordedSide;
 use crate::data::spelling::{is_delta_v, letters_and_digits, quantity_name, trailing_unit};
+use crate::data::stated_side::stated_side;
 use crate::units::Quantity;
 
 /// Words of columns of a change of velocity that are no record of it over time: its largest value, and the parts
 /// of which it is the sum.
 pub(super) const NO_RECORD: [&str; 3] = ["maximum", "persample", "changeper"];
-
-/// Words of a column, in letters and digits, that is positive to the left or counterclockwise, and to the right.
-const TO_LEFT: [&str; 8] = [
-    "leftpositive",
-    "positiveleft",
-    "positivetoleft",
-    "positivetotheleft",
-    "ccwpositive",
-    "positiveccw",
-    "counterclockwisepositive",
-    "positivecounterclockwise",
-];
-const TO_RIGHT: [&str; 8] = [
-    "rightpositive",
-    "positiveright",
-    "positivetoright",
-    "positivetotheright",
-    "cwpositive",
-    "positivecw",
-    "clockwisepositive",
-    "positiveclockwise",
-];
-
-/// The side to which a column says that it is positive; `None` also where it names both sides, or one to which it is
-/// negative.
-pub(super) fn stated_side(name: &str) -> Option<RecordedSide> {
-    let key_of = |text: &str| letters_and_digits(text).replace("anticlockwise", "counterclockwise");
-    // `right positive, left negative` without its comma has `positive left` in it.
-    let mut parts = name.split([',', ';', '/', '(', ')']).map(key_of);
-    let in_part = parts.find_map(|key| {
-        let others = key.replace("counterclockwise", "").replace("ccw", "");
-        one_side(has(&key, &TO_LEFT), has(&others, &TO_RIGHT))
-    });
-    in_part.or_else(|| {
-        let key = key_of(name);
-        let others = key.replace("counterclockwise", "");
-        let side = one_side(others.len() < key.len(), others.contains("clockwise"));
-        side.filter(|_| !key.contains("negative"))
-    })
-}
-
-/// The one of both sides that is named alone.
-fn one_side(is_left: bool, is_right: bool) -> Option<RecordedSide> {
-    match (is_left, is_right) {
-        (true, false) => Some(RecordedSide::Left),
-        (false, true) => Some(RecordedSide::Right),
-        _ => None,
-    }
-}
 
 /// The columns of a table: names with units, numbers and texts.
 pub(super) struct Table563<'a> {
@@ -249,35 +201,5 @@ fn is_on(cell: &str) -> Option<bool> {
         "off" | "no" | "notapplied" | "released" | "notpressed" | "inactive" | "false"
         | "nonengaged" | "notengaged" | "aus" | "nein" | "falsch" => Some(false),
         _ => number(cell).filter(|number| [0.0, 1.0].contains(number)).map(|number| number != 0.0),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_side_of_a_column_is_the_one_to_which_it_is_positive() {
-        use RecordedSide::{Left, Right};
-        for (words, side) in [
-            ("counterclockwise", Some(Left)),
-            ("Anticlockwise Positive", Some(Left)),
-            ("CCW positive", Some(Left)),
-            ("positive to the left", Some(Left)),
-            ("clockwise", Some(Right)),
-            ("positive clockwise", Some(Right)),
-            ("clockwise positive, counterclockwise negative", Some(Right)),
-            ("anticlockwise positive, clockwise negative", Some(Left)),
-            ("left negative, right positive", Some(Right)),
-            ("(right positive, left negative)", Some(Right)),
-            ("right positive left negative", None),
-            // Which sign is meant stands in signs, or only that of the negative side is told.
-            ("clockwise +, counterclockwise -", None),
-            ("clockwise negative", None),
-            ("", None),
-        ] {
-            let name = format!("Steering Wheel Angle, {words} [deg]");
-            assert_eq!(stated_side(&name), side, "{words}");
-        }
     }
 }

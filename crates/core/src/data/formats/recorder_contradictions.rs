@@ -2,7 +2,7 @@
 
 use crate::data::error::quoted;
 use crate::data::formats::recorder::RecordedSide;
-use crate::data::formats::recorder_columns::{Table563, stated_side};
+use crate::data::formats::recorder_columns::Table563;
 use crate::data::formats::recorder_table::{
     ROUNDING_M_S, delta_v_pairs, largest_of, no_delta_v, recorded_delta_v,
 };
