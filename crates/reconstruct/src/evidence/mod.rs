@@ -14,6 +14,7 @@ mod items;
 mod kind;
 mod mark;
 mod mirror;
+mod odd_drag;
 mod odd_sigma;
 mod places;
 mod position;

@@ -229,7 +229,9 @@ impl InputFile {
                 Ok(summary.contents().into_iter().chain(summary.unit_note.clone()).collect())
             }
             Self::Vehicle(vehicle) => Ok(said(&unusual_phrases(vehicle))),
-            Self::Evidence(evidence) => Ok(said(&evidence.odd_sigmas())),
+            Self::Evidence(evidence) => {
+                Ok(said(&[evidence.odd_sigmas(), evidence.odd_drags()].concat()))
+            }
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),
             Self::OfSweep => Ok(vec!["checked by its own command".to_owned()]),
