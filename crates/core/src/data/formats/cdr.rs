@@ -26,6 +26,7 @@
 //!
 //! Such a table is stood up where nothing else can be meant. The `.CDRX` of which the export was made is not read.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use crate::data::dialect::{Dialect, Separator, split};
@@ -230,6 +231,32 @@ impl Section {
         rows.map(|(_, cells)| cells.get(idx).cloned().unwrap_or_default()).collect()
     }
 
+    /// Both tables as one, if they are of the seconds before the crash, have the same times and no other column in common.
+    fn beside(&self, first: &Self) -> Option<Self> {
+        let time_idx = |of: &Self| {
+            is_before_crash(of)
+                .then(|| of.header().iter().position(|name| name.starts_with("time")))
+        };
+        let [of_first, of_second] = [time_idx(first)??, time_idx(self)??];
+        let (names, others) = (first.header(), self.header());
+        let is_common = |(idx, name): (usize, &String)| (idx == of_second) == names.contains(name);
+        let is_one = others.iter().enumerate().all(is_common);
+        if !is_one || first.column(of_first) != self.column(of_second) {
+            return None;
+        }
+        let rows = |of: &Self| -> Vec<Row> {
+            of.rows.iter().filter(|(_, cells)| !is_no_data(cells)).cloned().collect()
+        };
+        let both = |((line, mut cells), (_, others)): (Row, Row)| -> Row {
+            cells.resize(cells.len().max(names.len()), String::new());
+            let others = others.into_iter().enumerate().filter(|(idx, _)| *idx != of_second);
+            cells.extend(others.map(|(_, cell)| cell));
+            (line, cells)
+        };
+        let rows = rows(first).into_iter().zip(rows(self)).map(both).collect();
+        Some(Self { title: first.title.clone(), rows, is_turned: first.is_turned })
+    }
+
     /// The section as text: tabs between the cells, each row in its line.
     fn as_table(&self) -> String {
         let mut text = String::new();
@@ -322,6 +349,20 @@ pub(crate) fn is_unread(section: &Section) -> bool {
     is_over_time(section)
         && !section.is_table()
         && section.rows.iter().any(|(_, cells)| is_row(cells))
+}
+
+/// The tables among sections of one event. A tool divides a wide table of the seconds before the crash into several,
+/// which have the same times and other columns; they are made one again.
+pub(crate) fn joined<'a>(sections: &[&'a Section]) -> Vec<Cow<'a, Section>> {
+    let mut tables: Vec<Cow<'a, Section>> = Vec::new();
+    for section in sections.iter().copied().filter(|section| section.is_table()) {
+        let mut earlier = tables.iter().enumerate();
+        match earlier.find_map(|(at, first)| Some((at, section.beside(first)?))) {
+            Some((at, both)) => tables[at] = Cow::Owned(both),
+            None => tables.push(Cow::Borrowed(section)),
+        }
+    }
+    tables
 }
 
 /// The number at the beginning of a cell: `31 [50]` is 31.

@@ -17,7 +17,7 @@ use crate::data::budget::MAX_TABLE_BYTES;
 use crate::data::error::quoted;
 use crate::data::formats::cdr::{
     MAX_BYTES, Report, Row, Section, column_name, is_before_crash, is_over_time, is_report,
-    is_unread,
+    is_unread, joined,
 };
 use crate::data::formats::number_text;
 use crate::data::formats::recorder_columns::Table563;
@@ -271,8 +271,8 @@ impl RecorderRecord {
                 section.title
             ));
         }
-        for section in sections.iter().filter(|section| section.is_table()) {
-            record.add_section(section);
+        for table in joined(&sections) {
+            record.add_section(&table);
         }
         // A record over time says more than its largest value.
         sections.iter().for_each(|section| record.add_keys(section));

@@ -113,6 +113,12 @@ impl RecorderRecord {
         let usual = Some(RecordedSide::Right);
         let yaw_rate = table.sided(Quantity::AngularVelocity, usual, doubts, is_yaw_rate);
         let (yaw_rate, yaw_rate_side) = yaw_rate.unzip();
+        if speed.is_empty() && (steering.is_some() || yaw_rate.is_some()) {
+            doubts.push(
+                "a table with the steering or the yaw rate has no speed of the car; it is not read"
+                    .to_owned(),
+            );
+        }
         let rows = rows_before(time_s, &speed, doubts);
         let all = |values: &[Option<f64>], range: Range| {
             let of = |row: &usize| {

@@ -147,6 +147,36 @@ fn events_are_told_apart_and_their_tables_belong_together() {
     assert!(said("of which event"), "{record:?}");
 }
 
+/// A tool divides a wide table of the seconds before the crash; either part may come first.
+#[test]
+fn parts_of_one_table_before_the_crash_are_read_together() {
+    let title =
+        |number| format!("PRE-CRASH DATA [2 SAMPLES/SEC] (EVENT RECORD 1 TABLE {number} OF 2)\n");
+    let speed = "Times (sec),\"Speed, Vehicle Indicated (MPH [km/h])\"\n-1.0,40 [64]\n-0.5,36 [58]\n0,30 [48]\n";
+    let steering = |at: &str| format!("Times (sec),Steering Input (deg)\n-1.0,0\n{at},10\n0,20\n");
+    let record = |tables: [&str; 2]| {
+        let head = "CDR FILE INFORMATION\nComplete File Recorded,Yes\n";
+        let [first, second] = tables;
+        read(&format!("{head}{}{first}{}{second}", title(1), title(2)), None).unwrap()
+    };
+    for tables in [[speed, &steering("-0.5")], [&steering("-0.5"), speed]] {
+        let record = record(tables);
+        assert_eq!(record.before.time_s, [-1.0, -0.5, 0.0]);
+        assert!((record.before.steering_wheel_rad[2] - 20_f64.to_radians()).abs() < 1e-12);
+        assert!(record.speed_before.is_some() && record.doubts.is_empty(), "{record:?}");
+    }
+    // Parts with times of their own are two tables.
+    for tables in [[speed, &steering("-0.4")], [&steering("-0.4"), speed]] {
+        let record = record(tables);
+        assert!(record.speed_before.is_some(), "{record:?}");
+        assert!(record.doubts.iter().any(|doubt| doubt.contains("not read")), "{record:?}");
+    }
+    // Two tables with a speed each may be of two events.
+    let twice = record([speed, &speed.replace("40 [64]", "38 [61]")]);
+    assert!((twice.before.speed_m_s[0] - 40.0 * 0.447_04).abs() < 1e-9, "{twice:?}");
+    assert!(twice.doubts.iter().any(|doubt| doubt.contains("another table")), "{twice:?}");
+}
+
 /// Δv ahead is cut off at 0.1 s, that to the right goes on to 0.25 s.
 #[test]
 fn changes_of_velocity_without_a_common_end_are_not_both_taken() {
