@@ -69,7 +69,7 @@ use crate::site::picture::{is_picture_file, picture_size_px};
 use crate::site::projection_file::{projection_beside, unit_of_world_file};
 use crate::site::{
     DrawingFile, EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, PixelMap, Site, SiteError,
-    SiteOrigin, SurveyFormat, SurveyOptions, SurveyedLine, SurveyedPoint, WorldFile,
+    SiteOrigin, SurveyFormat, SurveyOptions, SurveyedLine, SurveyedPoint, WorldFile, geo_tiff,
     world_file_beside,
 };
 use crate::units::{Quantity, US_SURVEY_FOOT};
@@ -154,6 +154,7 @@ impl Site {
             None => None,
         };
         top.finish()?;
+        let notes = orthophoto.as_ref().and_then(geo_tiff::note).into_iter().collect();
         Ok(Self {
             name: name.unwrap_or_else(|| file_name(file.path)),
             path: file.path.to_owned(),
@@ -167,7 +168,7 @@ impl Site {
             lines,
             points,
             drawing,
-            notes: Vec::new(),
+            notes,
         })
     }
 }

@@ -13,6 +13,7 @@
 
 mod error;
 
+mod geo_tiff;
 mod origin;
 mod pixel_map;
 mod projection_file;

@@ -6,8 +6,8 @@ use crate::data::GeographicPlace;
 use crate::site::drawing::USUAL_SIDE_M;
 use crate::site::projection_file::unit_of_world_file;
 use crate::site::{
-    DrawingSummary, GeographicFrame, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px,
-    world_file_beside,
+    DrawingSummary, GeographicFrame, PixelMap, SiteError, SiteOrigin, WorldFile, geo_tiff,
+    picture_size_px, world_file_beside,
 };
 use crate::units::{Quantity, US_SURVEY_FOOT, UnitSystem};
 use crate::vehicle::{FrictionZone, RoadSlope};
@@ -221,7 +221,8 @@ impl Site {
         let is_placed = world_file.is_some();
         let file = path.to_owned();
         let orthophoto = Orthophoto { file, world_file, world_unit, size_px, map, is_placed };
-        Ok(Self { orthophoto: Some(orthophoto), ..Self::empty(path) })
+        let notes = geo_tiff::note(&orthophoto).into_iter().collect();
+        Ok(Self { orthophoto: Some(orthophoto), notes, ..Self::empty(path) })
     }
 
     /// A site of which nothing is known but its file.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::data::read_bytes;
 use crate::site::cloud::{OF_MERCATOR, StatedUnit, of_wkt};
-use crate::site::{LengthUnit, SiteError};
+use crate::site::{LengthUnit, SiteError, geo_tiff};
 
 /// Bytes of such a file. A program may write the statistics of a picture beside its coordinate system.
 const MAX_BYTES: u64 = 16 << 20;
@@ -20,7 +20,8 @@ pub(super) fn projection_beside(picture: &Path, world_file: &Path) -> Option<Pat
     files.into_iter().chain([PathBuf::from(described)]).find(|file| file.is_file())
 }
 
-/// The unit of a world file: the one that is chosen, else that of the system beside it, else metres.
+/// The unit of a world file: the one that is chosen, else that of the system beside it or in the keys of a GeoTIFF, else
+/// metres.
 ///
 /// # Errors
 /// [`SiteError::Projection`] if the system is none in the plane or that of web maps, or if its unit is not the
@@ -30,10 +31,13 @@ pub(super) fn unit_of_world_file(
     world_file: &Path,
     chosen: Option<LengthUnit>,
 ) -> Result<LengthUnit, SiteError> {
-    let Some(path) = projection_beside(picture, world_file) else {
-        return Ok(chosen.unwrap_or_default());
+    let (path, stated) = match projection_beside(picture, world_file) {
+        Some(path) => {
+            let stated = of_wkt(&system_in(&read_bytes(&path, MAX_BYTES)?)).plane;
+            (path, stated)
+        }
+        None => (picture.to_owned(), geo_tiff::stated_in(picture)),
     };
-    let stated = of_wkt(&system_in(&read_bytes(&path, MAX_BYTES)?)).plane;
     let wrong = |message: String| Err(SiteError::Projection { path, message });
     match (chosen, stated) {
         (_, Some(StatedUnit::Mercator)) => wrong(OF_MERCATOR.to_owned()),

@@ -83,8 +83,10 @@ pub(super) fn of_header(header: &las::Header) -> Option<Stated> {
     Some(of_keys(value))
 }
 
-/// - `value`: of a key of GeoTIFF.
-fn of_keys(value: impl Fn(u16) -> Option<u16>) -> Stated {
+/// What the keys of a GeoTIFF state.
+///
+/// - `value`: of a key.
+pub(in crate::site) fn of_keys(value: impl Fn(u16) -> Option<u16>) -> Stated {
     let length = |id: u16| {
         Some(match value(id)? {
             9001 => StatedUnit::Length(LengthUnit::Metre),
