@@ -11,13 +11,23 @@ use impactlab_core::vehicle::sheet::Unusual;
 /// 0.33: those of the library have 0.28 to 0.32, and an even rod has 0.29.
 const GYRATION_OF_LENGTH: [f64; 2] = [0.2, 0.4];
 
+/// Distance of the CG from the front end as a share of the length. Of cars, vans and trucks it is 0.4 to 0.55; beyond
+/// is one from the front axle, or from the rear end.
+const CG_OF_LENGTH: [f64; 2] = [0.33, 0.67];
+
 /// Mass from which a body stands for a barrier, whose inertia is as large as one likes, kg.
 const BARRIER_KG: f64 = 1e5;
 
 /// What the numbers of both vehicles say that a slip of the hand or of a unit explains better.
 pub(crate) fn doubtful(scenario: &Scenario) -> Vec<Caveat> {
-    let uneven = Role::ALL.into_iter().filter_map(|role| uneven_caveat(scenario, role));
-    restrictions::backwards(scenario).into_iter().chain(uneven).collect()
+    let is_vehicle = |role: &Role| {
+        let vehicle = scenario.vehicle(*role);
+        vehicle.fixed.is_none() && vehicle.mass_kg < BARRIER_KG
+    };
+    let found = Role::ALL.into_iter().filter(is_vehicle).flat_map(|role| {
+        uneven_caveat(scenario, role).into_iter().chain(cg_caveat(scenario, role))
+    });
+    restrictions::backwards(scenario).into_iter().chain(found).collect()
 }
 
 /// What the data sheet of a vehicle states and no car of its other figures has.
@@ -54,18 +64,9 @@ pub(crate) fn unusual_phrases(vehicle: &VehicleParameters) -> Vec<Phrase> {
     unusual.iter().map(phrase).collect()
 }
 
-/// A yaw inertia that no vehicle of that mass and length has.
-fn uneven_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
-    let vehicle = scenario.vehicle(role);
-    if vehicle.fixed.is_some() || vehicle.mass_kg >= BARRIER_KG {
-        return None;
-    }
-    let [low, high] = GYRATION_OF_LENGTH;
-    let share = (vehicle.yaw_inertia_kg_m2 / vehicle.mass_kg).sqrt() / vehicle.length_m;
-    if (low..=high).contains(&share) {
-        return None;
-    }
-    let (which, subject) = match role {
+/// A vehicle in words, and as what an answer is about.
+fn named(role: Role) -> (Phrase, CaveatSubject) {
+    match role {
         Role::Struck => {
             (Phrase::new("the struck vehicle", "beim gestoßenen Fahrzeug"), CaveatSubject::Vehicle)
         }
@@ -73,7 +74,42 @@ fn uneven_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
             Phrase::new("the striking vehicle", "beim stoßenden Fahrzeug"),
             CaveatSubject::Striking,
         ),
-    };
+    }
+}
+
+/// A CG that lies where no vehicle of that length has it.
+fn cg_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
+    let vehicle = scenario.vehicle(role);
+    let [low, high] = CG_OF_LENGTH;
+    let share = vehicle.cg_from_front_m / vehicle.length_m;
+    if (low..=high).contains(&share) {
+        return None;
+    }
+    let (which, subject) = named(role);
+    let text = Phrase::new(
+        "of {0}, the CG is {1} behind the front end of {2} of length, and of cars at 40 to 55 % of it; it may have been \
+         measured from an axle or from the rear",
+        "{0} liegt der Schwerpunkt {1} hinter dem vorderen Ende bei {2} Länge, bei Fahrzeugen bei 40 bis 55 % davon; \
+         vielleicht ist von einer Achse oder von hinten gemessen",
+    )
+    .with(PhraseValue::phrase(which))
+    .with(PhraseValue::three_digits(Quantity::Length, vehicle.cg_from_front_m))
+    .with(PhraseValue::three_digits(Quantity::Length, vehicle.length_m));
+    let caveat = Caveat::new(CaveatKind::DoubtfulData, text)
+        .with_value("distance of the CG from the front over the length", share)
+        .with_range(CG_OF_LENGTH);
+    Some(Caveat { subject: Some(subject), ..caveat })
+}
+
+/// A yaw inertia that no vehicle of that mass and length has.
+fn uneven_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
+    let vehicle = scenario.vehicle(role);
+    let [low, high] = GYRATION_OF_LENGTH;
+    let share = (vehicle.yaw_inertia_kg_m2 / vehicle.mass_kg).sqrt() / vehicle.length_m;
+    if (low..=high).contains(&share) {
+        return None;
+    }
+    let (which, subject) = named(role);
     let text = Phrase::new(
         "of {0}, a yaw inertia of {1} does not fit a mass of {2} and a length of {3}: the radius of gyration is \
          {4} of the length, and of cars 25 to 33 %; one of the three may be in another unit",
@@ -106,15 +142,17 @@ mod tests {
             change(&mut scenario);
             doubtful(&scenario)
         };
-        // Tonnes as kilograms, kilograms as pounds, an inertia in another unit, feet as metres.
-        let slips: [fn(&mut Scenario); 4] = [
+        // Tonnes as kilograms, kilograms as pounds, an inertia in another unit, feet as metres, which lets the CG lie
+        // ahead of the rest, and a CG that was measured from the front axle.
+        let slips: [fn(&mut Scenario); 5] = [
             |scenario| scenario.striking.mass_kg /= 1000.0,
             |scenario| scenario.striking.mass_kg *= 0.453_592_37,
             |scenario| scenario.striking.yaw_inertia_kg_m2 /= 1.355_817_9,
             |scenario| scenario.striking.length_m /= 0.3048,
+            |scenario| scenario.struck.cg_from_front_m = 1.25,
         ];
         let found = slips.map(change);
-        for (at, n) in [(0, 1), (1, 1), (2, 0), (3, 1)] {
+        for (at, n) in [(0, 1), (1, 1), (2, 0), (3, 2), (4, 1)] {
             assert_eq!(found[at].len(), n, "{at}: {:?}", found[at]);
         }
         let light = &found[0][0];

@@ -18,9 +18,10 @@ const LADEN_FACTOR: f64 = 2.0;
 const TRUCK_WIDTH_M: f64 = 2.2;
 
 /// What is compared: what size, mass and axles of a car decide.
-const COMPARED: [Q; 8] = [
+const COMPARED: [Q; 9] = [
     Q::Mass,
     Q::Wheelbase,
+    Q::FrontShare,
     Q::Track,
     Q::FrontOverhang,
     Q::CgHeight,
@@ -58,7 +59,8 @@ impl DataSheet {
             let above = if is_laden { LADEN_FACTOR } else { FACTOR };
             let is_by_factor = !(by_rule / FACTOR..=by_rule * above).contains(&stated);
             let is_far = stated < rule.at(-FAR) || stated > rule.at(FAR);
-            (is_by_factor && is_far).then_some(Unusual { quantity, stated, by_rule })
+            let is_wider = quantity == Q::Track && stated >= width_m;
+            (is_wider || is_by_factor && is_far).then_some(Unusual { quantity, stated, by_rule })
         };
         COMPARED.into_iter().filter_map(judge).collect()
     }
@@ -78,12 +80,14 @@ mod tests {
                 .with(Q::Width, 1.8)
         };
         assert_eq!(car().unusual(), []);
-        // Kilograms as pounds, the length as wheelbase, half the track, the height of the roof, digits that are
-        // lost, and a diameter.
+        // Kilograms as pounds, the length as wheelbase, a distance from the rear axle, half the track, one that is
+        // wider than the car, the height of the roof, digits that are lost, and a diameter.
         for (quantity, value) in [
             (Q::Mass, 680.4),
             (Q::Wheelbase, 4.7),
+            (Q::FrontShare, 0.28),
             (Q::Track, 0.75),
+            (Q::Track, 1.85),
             (Q::CgHeight, 1.4),
             (Q::YawInertia, 250.0),
             (Q::SprungMass, 150.0),

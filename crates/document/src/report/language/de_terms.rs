@@ -494,6 +494,10 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("force at the end as a share of the peak", "Kraft am Ende als Anteil der Spitze"),
     ("radius of gyration over the length", "Trägheitsradius als Anteil der Länge"),
     (
+        "distance of the CG from the front over the length",
+        "Abstand des Schwerpunkts von vorn als Anteil der Länge",
+    ),
+    (
         "standard error of an end over the width of the interval",
         "Standardfehler eines Intervallendes als Anteil der Breite",
     ),
