@@ -153,7 +153,14 @@ pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
     let letters: String = text.chars().filter(|c| c.is_alphabetic()).collect();
     // A kilonewton is no knot.
     let is_kilonewton = quantity == Quantity::Speed && ["kN", "KN"].contains(&letters.as_str());
-    unit_of_key(quantity, &checked_unit_key(text).filter(|_| !is_kilonewton)?)
+    let text = match (quantity, text.trim()) {
+        (Quantity::Length, "'" | "′") => "ft",
+        (Quantity::Length, "\"" | "″") => "in",
+        (_, text) => text,
+    };
+    // A degree in German; `grad` without a capital may be a gon.
+    let key = checked_unit_key(&text.replace("Grad", "deg"));
+    unit_of_key(quantity, &key.filter(|_| !is_kilonewton)?)
 }
 
 /// The key of a text that may be a unit; `None` if it is too long or may be millinewtons.
@@ -183,6 +190,7 @@ fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
         (Quantity::Force, "lb" | "lbs") => "lbf",
         (Quantity::Force, "kips") => "kip",
         (Quantity::Mass, "lbs") => "lb",
+        (Quantity::Moment, "inlb" | "inlbs" | "lbin" | "lbsin" | "inlbf") => "lbfin",
         (Quantity::Moment, "ftlb" | "ftlbs" | "lbft" | "lbsft" | "ftlbf") => "lbfft",
         (_, key) => key,
     };
@@ -274,9 +282,7 @@ fn is_bracketed(text: &str) -> bool {
 }
 
 fn is_unit(text: &str) -> bool {
-    let has_unit =
-        |key: String| Quantity::ALL.iter().any(|quantity| unit_of_key(*quantity, &key).is_some());
-    checked_unit_key(text).is_some_and(has_unit)
+    Quantity::ALL.iter().any(|quantity| unit(*quantity, text).is_some())
 }
 
 pub(crate) fn letters_and_digits(text: &str) -> String {
@@ -342,6 +348,13 @@ mod tests {
             ("Kraft X [kN]", Channel::Fx, "kN"),
             ("Fx [-]", Channel::Fx, ""),
             ("Fx [MN]", Channel::Fx, "MN"),
+            ("x (')", Channel::X, "ft"),
+            ("y [\"]", Channel::Y, "in"),
+            ("Gierwinkel [Grad]", Channel::Yaw, "deg"),
+            ("Gierrate [Grad/s]", Channel::YawRate, "deg/s"),
+            ("Fx [daN]", Channel::Fx, "daN"),
+            ("Fx [kgf]", Channel::Fx, "kgf"),
+            ("Mz (in-lb)", Channel::Mz, "lbf in"),
             ("speed [kn]", Channel::Speed, "kn"),
             ("Speed (Knots)", Channel::Speed, "kn"),
             ("vx_kts", Channel::Vx, "kn"),
@@ -364,6 +377,7 @@ mod tests {
             ("fx_kg", Channel::Fx, "kg"),
             ("speed [kN]", Channel::Speed, "kN"),
             ("Fx [kts]", Channel::Fx, "kts"),
+            ("yaw [grad]", Channel::Yaw, "grad"),
             ("time [furlong]", Channel::Time, "furlong"),
             ("steering_wheel [%]", Channel::SteeringWheel, "%"),
             ("Fx (%)", Channel::Fx, "%"),
