@@ -142,7 +142,8 @@ pub(super) fn check_places(
         let stated = stated_unit(name, table.unit_text(idx), Quantity::Angle);
         let is_other_unit = matches!(stated, Ok(Some(unit)) if unit.symbol != "deg");
         let lower = name.to_lowercase();
-        let is_named = lower.contains(word) || lower.ends_with(&format!("({short})"));
+        let mut words = lower.split(|c: char| !c.is_alphanumeric());
+        let is_named = lower.contains(word) || words.any(|of| of == short);
         let is_lettered = |row_idx: usize| letter(row_idx, idx + 1) == short;
         let is_positive = |row_idx: usize| table.number(row_idx, idx).is_some_and(|of| of > 0.0);
         let is_turned = |row_idx: usize| (is_named || is_lettered(row_idx)) && is_positive(row_idx);
@@ -187,6 +188,7 @@ mod tests {
         for (header, side) in [
             ("latitude,longitude", "W"),
             ("latitude,longitude (W)", "x"),
+            ("latitude (N) [deg],longitude (W) [deg]", "x"),
             ("latitude [rad],longitude [rad]", "x"),
         ] {
             let error = read(header, side, "0.000").unwrap_err();
