@@ -1,9 +1,11 @@
-//! Times of day, such as `12:59:59.9` or `2026-11-25T12:59:59.9+01:00`.
+//! Times of day, such as `12:59:59.9`, `12:59:59 PM` or `2026-11-25T12:59:59.9+01:00`.
 
 use crate::data::Table;
 
 pub(super) const HOUR_S: f64 = 3600.0;
 pub(super) const DAY_S: f64 = 86_400.0;
+/// Half of a day, after which a clock of twelve hours begins again.
+const HALF_S: f64 = DAY_S / 2.0;
 
 /// The times of day in a column, such as `12:59:59.9`, in seconds. With a date they count from the midnight before
 /// the first one; without, they go on over midnight, and over the hour where no hours are given. `None` if the first
@@ -62,7 +64,7 @@ struct Stamp {
 
 impl Stamp {
     fn read(text: &str) -> Option<Self> {
-        let text = text.trim().trim_end_matches(['Z', 'z']);
+        let (text, half_s) = without_half(text.trim().trim_end_matches(['Z', 'z']));
         let (date, time) = text.rsplit_once(['T', ' ']).unwrap_or(("", text));
         let (clock, offset_s) = match time.find(['+', '-']) {
             Some(at) => {
@@ -72,9 +74,14 @@ impl Stamp {
             None => (time, None),
         };
         let (time_s, period_s) = plain_time_s(clock)?;
-        if offset_s.is_some() && period_s != DAY_S {
-            return None;
-        }
+        let time_s = match half_s {
+            Some(half_s) if period_s == DAY_S && time_s < HALF_S + HOUR_S => {
+                time_s % HALF_S + half_s
+            }
+            Some(_) => return None,
+            None if offset_s.is_some() && period_s != DAY_S => return None,
+            None => time_s,
+        };
         let date = date.trim().trim_end_matches(',').to_owned();
         Some(Self { date, time_s, period_s, offset_s: offset_s.unwrap_or(0.0) })
     }
@@ -82,6 +89,16 @@ impl Stamp {
     fn in_utc_s(&self) -> f64 {
         self.time_s - self.offset_s
     }
+}
+
+/// A time without its `AM` or `PM`, and when that half of the day begins, s; `None` of a time that has neither.
+fn without_half(text: &str) -> (&str, Option<f64>) {
+    let halves = [("am", 0.0), ("pm", HALF_S)];
+    let found = halves.into_iter().find_map(|(word, start_s)| {
+        let (time, end) = text.split_at_checked(text.len().checked_sub(word.len())?)?;
+        end.eq_ignore_ascii_case(word).then_some((time.trim_end(), Some(start_s)))
+    });
+    found.unwrap_or((text, None))
 }
 
 /// The order of the three numbers of a date that does not begin with the year: whether the month comes first.
@@ -168,6 +185,11 @@ mod tests {
             ("2026-11-25T00:30:01.5+01:00", Some((-1_798.5, DAY_S))),
             ("12:00:00-0330", Some((55_800.0, DAY_S))),
             ("59:59.5", Some((3599.5, HOUR_S))),
+            ("11/30/2026 1:30:00.5 PM", Some((48_600.5, DAY_S))),
+            ("12:00:01am", Some((1.0, DAY_S))),
+            ("12:30:00 pm", Some((45_000.0, DAY_S))),
+            ("13:00:00 PM", None),
+            ("59:59 PM", None),
             ("59:59+01:00", None),
             ("12:00:00+1:00:00", None),
             ("12:00:00-", None),
