@@ -238,7 +238,17 @@ pub fn read_any_series(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, D
 pub fn series_of_table(table: &Table, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
     let columns = columns_of(table, map)?;
     let is_complete = |kind: &FileKind| kind.first_missing(&columns).is_none();
-    let kind = FileKind::ALL.into_iter().find(is_complete);
+    // Of a file of no kind, the one that a column makes it which is left out for its unit.
+    let has_wrong_unit = |kind: &FileKind| {
+        let needed: Vec<Channel> = kind.alternatives().concat();
+        let mut wrong = columns.notes.iter().filter_map(|note| match note {
+            Note::WrongUnit { channel, .. } => Some(channel),
+            _ => None,
+        });
+        wrong.any(|channel| needed.contains(channel))
+    };
+    let all = || FileKind::ALL.into_iter();
+    let kind = all().find(is_complete).or_else(|| all().find(has_wrong_unit));
     load(table, columns, kind.unwrap_or(FileKind::Force), map)
 }
 

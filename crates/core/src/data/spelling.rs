@@ -242,13 +242,20 @@ pub(crate) fn same_name(left: &str, right: &str) -> bool {
 }
 
 /// Whether a line is a row of units, which some programs write beneath the header: each of its
-/// cells that is not blank is a unit or in brackets, and there is at least one.
+/// cells that is not blank is a unit or in brackets, and there is at least one. Of one that names no
+/// channel, a third of these cells may be units that are not known.
 pub(crate) fn is_unit_row<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
-    let mut any = false;
-    cells.filter_map(|cell| Some((cell, unit_text(cell)?))).all(|(cell, text)| {
-        any = true;
-        is_bracketed(cell) || is_unit(text)
-    }) && any
+    let (mut n_units, mut n_others, mut has_names) = (0, 0, false);
+    for (cell, text) in cells.filter_map(|cell| Some((cell, unit_text(cell)?))) {
+        match is_bracketed(cell) || is_unit(text) {
+            true => n_units += 1,
+            false => {
+                n_others += 1;
+                has_names |= meaning(cell) != Meaning::Unknown;
+            }
+        }
+    }
+    n_units > 0 && !has_names && n_units >= 2 * n_others
 }
 
 /// Whether a cell of a row of units has one that is known.
@@ -424,5 +431,6 @@ mod tests {
         let is_row = |text: &str| is_unit_row(text.split(';'));
         assert!(is_row("s;kN;kN") && is_row("[s];[kN];[?]") && is_row("s;;-;N"));
         assert!(!is_row("time;kN") && !is_row(";;") && !is_row("1;2"));
+        assert!(is_row("s;m;m;gon") && !is_row("s;m;gon;mils") && !is_row("s;m;m;yaw"));
     }
 }
