@@ -123,18 +123,21 @@ fn recorded_m_s(series: &TimeSeries) -> Option<Vec<f64>> {
 }
 
 /// Compares v_x without a v_y with the way along the heading, as a whole: neither a car that slides nor a place beside
-/// its CG makes it so much longer or shorter. Nothing is found where heading and path contradict each other.
+/// its CG makes it so much longer or shorter. Nothing is found where heading and path contradict each other. Without a
+/// heading it is compared with the path, which no component of the velocity is faster than.
 fn forward_speed(series: &TimeSeries) -> Option<PathSpeed> {
     let get = |channel| series.get(channel);
     if get(Channel::Vy).is_some() {
         return None;
     }
-    let ([x, y], [vx, yaw_rad]) =
-        ([get(Channel::X)?, get(Channel::Y)?], [get(Channel::Vx)?, get(Channel::Yaw)?]);
-    let time_s = series.time_s();
+    let ([x, y], vx) = ([get(Channel::X)?, get(Channel::Y)?], get(Channel::Vx)?);
+    let (yaw_rad, time_s) = (get(Channel::Yaw), series.time_s());
     let step = |to: usize| {
-        let (sin, cos) = ((yaw_rad[to - 1] + yaw_rad[to]) / 2.0).sin_cos();
-        let way_m = cos * (x[to] - x[to - 1]) + sin * (y[to] - y[to - 1]);
+        let [dx_m, dy_m] = [x[to] - x[to - 1], y[to] - y[to - 1]];
+        let way_m = yaw_rad.map_or(dx_m.hypot(dy_m), |yaw_rad| {
+            let (sin, cos) = ((yaw_rad[to - 1] + yaw_rad[to]) / 2.0).sin_cos();
+            cos * dx_m + sin * dy_m
+        });
         let speed_m_s = (vx[to - 1] + vx[to]) / 2.0;
         (to, time_s[to] - time_s[to - 1], way_m, speed_m_s)
     };
@@ -144,7 +147,8 @@ fn forward_speed(series: &TimeSeries) -> Option<PathSpeed> {
     let (to, step_s, way_m, speed_m_s) =
         steps.iter().copied().max_by(|a, b| a.3.abs().total_cmp(&b.3.abs()))?;
     let is_compared = path_m > SHORTEST_PATH_M && steps.len() >= LEAST_WINDOWS;
-    let is_off = is_compared && is_other_length(recorded_m / path_m);
+    let may_be_short = yaw_rad.is_none() && recorded_m < path_m;
+    let is_off = is_compared && is_other_length(recorded_m / path_m) && !may_be_short;
     (is_off && contradictions(series).is_empty()).then(|| PathSpeed {
         ratio: recorded_m / path_m,
         is_whole: true,
@@ -368,6 +372,14 @@ mod tests {
         for channel in [Channel::X, Channel::Y] {
             components.insert(channel, series.get(channel).unwrap().to_vec()).unwrap();
         }
+        // One component alone is no faster than the path.
+        let along = |vx_m_s: f64| {
+            let mut of = components.clone();
+            of.insert(Channel::Vx, vec![vx_m_s; n]).unwrap();
+            path_speed(&of)
+        };
+        assert_eq!([along(9.0), along(15.0)], [None, None]);
+        assert!(along(54.0).is_some_and(|found| found.is_whole && found.ratio > 3.0));
         components.insert(Channel::Vx, vec![9.0 * 3.6; n]).unwrap();
         components.insert(Channel::Vy, vec![12.0 * 3.6; n]).unwrap();
         assert!(path_speed(&components).unwrap().is_whole);
