@@ -183,6 +183,57 @@ pub(super) fn offset_note(series: &TimeSeries) -> Option<Note> {
     })
 }
 
+/// That a yaw rate without a yaw angle beside it is to the other side than the path turns, or in another unit. What spins
+/// keeps to none of these relations while its path turns.
+pub(super) fn yaw_rate_note(series: &TimeSeries) -> Option<Note> {
+    if series.get(Channel::Yaw).is_some() || held_positions(series).is_some() {
+        return None;
+    }
+    let (time_s, rate) = (series.time_s(), series.get(Channel::YawRate)?);
+    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
+    let mut by_rate_rad = vec![0.0];
+    for (times, rates) in time_s.windows(2).zip(rate.windows(2)) {
+        let turned = by_rate_rad.last().copied().unwrap_or_default();
+        by_rate_rad.push(turned + (times[1] - times[0]) * (rates[0] + rates[1]) / 2.0);
+    }
+    let way = |(from, to): &(usize, usize)| (x[*to] - x[*from]).hypot(y[*to] - y[*from]);
+    let is_driving = |of: &(usize, usize)| way(of) >= DRIVING_M_S * (time_s[of.1] - time_s[of.0]);
+    let driven: Vec<(usize, usize)> = windows(time_s.len())?.filter(is_driving).collect();
+    let course_rad = driven.iter().map(|&(from, to)| (y[to] - y[from]).atan2(x[to] - x[from]));
+    let course_rad = continued_rad(&course_rad.collect::<Vec<_>>());
+    let by_rate = driven.iter().map(|&(from, to)| (by_rate_rad[from] + by_rate_rad[to]) / 2.0);
+    let by_rate: Vec<f64> = by_rate.collect();
+    let low = course_rad.iter().copied().fold(f64::INFINITY, f64::min);
+    let turn_rad = course_rad.iter().copied().fold(f64::NEG_INFINITY, f64::max) - low;
+    if driven.len() < N_WINDOWS / 4 || turn_rad < LEAST_COURSE_TURN_RAD {
+        return None;
+    }
+    let reach = RELATION_RAD.min(UNIT_SHARE_OF_TURN * turn_rad);
+    let is_factor = |factor: f64| {
+        let off: Vec<f64> =
+            course_rad.iter().zip(&by_rate).map(|(course, rate)| course - rate / factor).collect();
+        let mean = off.iter().sum::<f64>() / off.len() as f64;
+        off.iter().all(|off| (off - mean).abs() < reach)
+    };
+    let (degrees, radians) = (1.0_f64.to_degrees(), 1.0_f64.to_radians());
+    let (_, words) = [
+        (-1.0, "to the other side than the path turns: it may be positive clockwise"),
+        (degrees, "57 times what the path turns by, as if degrees were read as radians"),
+        (
+            -degrees,
+            "-57 times what the path turns by, as of degrees clockwise that were read as radians",
+        ),
+        (radians, "1/57 of what the path turns by, as if radians were read as degrees"),
+        (
+            -radians,
+            "-1/57 of what the path turns by, as of radians clockwise that were read as degrees",
+        ),
+    ]
+    .into_iter()
+    .find(|(factor, _)| is_factor(*factor))?;
+    Some(Note::Doubt { text: format!("the yaw rate is {words}; map it with its sign and unit") })
+}
+
 /// The direction of the first metre, over which a vehicle that does not turn moves along its heading. One that
 /// slides or drives backwards may not; that its heading is just that of a compass is no chance.
 pub(super) fn at_the_start(series: &TimeSeries) -> Option<Contradiction> {
@@ -225,4 +276,38 @@ fn yaw_unit(course_rad: &[f64], pairs: &[(f64, f64)], course_turn: f64) -> Optio
 pub(super) fn to_a_side(angle_rad: f64) -> String {
     let side = if angle_rad > 0.0 { "left" } else { "right" };
     format!("{:.0} deg to the {side}", angle_rad.to_degrees().abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without a yaw angle the yaw rate is compared with the turn of the path.
+    #[test]
+    fn a_yaw_rate_alone_is_compared_with_the_path() {
+        let said = |change: &dyn Fn(f64) -> f64| {
+            // A bend of 40 m radius at 15 m/s.
+            let time_s: Vec<f64> = (0..200).map(|i| f64::from(i) * 0.02).collect();
+            let rate = 15.0 / 40.0;
+            let column = |f: &dyn Fn(f64) -> f64| time_s.iter().map(|t| f(rate * t)).collect();
+            let mut series = TimeSeries::new(time_s.clone()).unwrap();
+            series.insert(Channel::X, column(&|angle| 40.0 * angle.sin())).unwrap();
+            series.insert(Channel::Y, column(&|angle| 40.0 * (1.0 - angle.cos()))).unwrap();
+            series.insert(Channel::YawRate, column(&|_| change(rate))).unwrap();
+            yaw_rate_note(&series).map(|note| note.to_string())
+        };
+        assert_eq!(said(&|rate| rate), None);
+        // A spin, and a slide that goes straight on.
+        assert_eq!(said(&|rate| 6.0 * rate), None);
+        assert_eq!(said(&|_| 0.0), None);
+        for (change, words) in [
+            (-1.0, "clockwise"),
+            (57.295_78, "degrees were read as radians"),
+            (-57.295_78, "degrees clockwise"),
+            (1.0 / 57.295_78, "radians were read as degrees"),
+        ] {
+            let text = said(&|rate| change * rate).unwrap();
+            assert!(text.contains(words), "{change}: {text}");
+        }
+    }
 }

@@ -15,6 +15,7 @@ pub(super) fn of_numbers(
 ) -> Vec<Note> {
     let all = [
         course::offset_note(series),
+        course::yaw_rate_note(series),
         path_speed::note(table, by_channel, series),
         steering::note(by_channel, map, series),
         steering::opposed(by_channel, series),
