@@ -99,11 +99,20 @@ impl Car {
         evidence: &CarEvidence,
         vehicle: Option<&VehicleParameters>,
     ) -> Vec<Estimate> {
+        Self::sheet_of(evidence, vehicle).map_or_else(Vec::new, |sheet| sheet.estimates())
+    }
+
+    /// The data sheet of a vehicle with what the evidence says of it; `None` of a vehicle of which every parameter is
+    /// known.
+    pub fn sheet_of(
+        evidence: &CarEvidence,
+        vehicle: Option<&VehicleParameters>,
+    ) -> Option<DataSheet> {
         let sheet = match vehicle {
             None => Some(DataSheet::new("car", VehicleClass::Any)),
             Some(vehicle) => vehicle.sheet.as_deref().cloned(),
         };
-        sheet.map_or_else(Vec::new, |sheet| completed(sheet, evidence).estimates())
+        sheet.map(|sheet| completed(sheet, evidence))
     }
 
     /// A vehicle of which every parameter is known, with what the evidence says otherwise.

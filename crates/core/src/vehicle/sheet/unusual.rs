@@ -17,6 +17,12 @@ const LADEN_FACTOR: f64 = 2.0;
 /// Width from which a vehicle is a truck or a bus, of which the rules know nothing, m.
 const TRUCK_WIDTH_M: f64 = 2.2;
 
+/// Mass up to which a vehicle of unknown size is a car or a van, kg.
+const CAR_MASS_KG: f64 = 3500.0;
+
+/// What is compared where length or width is not known: what mass and axles decide.
+const WITHOUT_SIZE: [Q; 2] = [Q::FrontShare, Q::YawInertia];
+
 /// What is compared: what size, mass and axles of a car decide.
 const COMPARED: [Q; 9] = [
     Q::Mass,
@@ -43,14 +49,19 @@ pub struct Unusual {
 
 impl DataSheet {
     /// The stated quantities that lie far from what cars of that size have, as one in another unit does. Those
-    /// of models of cars and of trucks are not judged, nor is a sheet without length and width.
+    /// of models of cars and of trucks are not judged. Of a sheet without length or width, what mass and axles decide
+    /// is, where the mass is that of a car.
     pub fn unusual(&self) -> Vec<Unusual> {
         let sized = self.known(Q::Length).and(self.known(Q::Width));
-        let Some(width_m) = sized else { return Vec::new() };
         let values = self.resolve(|_, _| {});
-        if width_m > TRUCK_WIDTH_M || is_model(self.class, &values) {
+        let is_truck = match sized {
+            Some(width_m) => width_m > TRUCK_WIDTH_M,
+            None => self.known(Q::Mass).is_none_or(|mass_kg| mass_kg > CAR_MASS_KG),
+        };
+        if is_truck || is_model(self.class, &values) {
             return Vec::new();
         }
+        let compared = if sized.is_some() { &COMPARED[..] } else { &WITHOUT_SIZE[..] };
         let judge = |quantity: Q| {
             let stated = self.known(quantity)?;
             let rule = Rule::new(quantity, self.class, self.drive, &values);
@@ -59,10 +70,10 @@ impl DataSheet {
             let above = if is_laden { LADEN_FACTOR } else { FACTOR };
             let is_by_factor = !(by_rule / FACTOR..=by_rule * above).contains(&stated);
             let is_far = stated < rule.at(-FAR) || stated > rule.at(FAR);
-            let is_wider = quantity == Q::Track && stated >= width_m;
+            let is_wider = quantity == Q::Track && sized.is_some_and(|width_m| stated >= width_m);
             (is_wider || is_by_factor && is_far).then_some(Unusual { quantity, stated, by_rule })
         };
-        COMPARED.into_iter().filter_map(judge).collect()
+        compared.iter().copied().filter_map(judge).collect()
     }
 }
 
@@ -98,6 +109,10 @@ mod tests {
             assert_eq!(quantities, [quantity], "{found:?}");
             assert_eq!(found[0].stated, value);
         }
+        // What is known of a car by its mass alone.
+        let unsized_car = DataSheet::new("car", VehicleClass::Any).with(Q::Mass, 1500.0);
+        assert_eq!(unsized_car.unusual(), []);
+        assert_eq!(unsized_car.with(Q::YawInertia, 250.0).unusual().len(), 1);
         // Loaded vans, a truck and a model of a car; and a van in pounds.
         let van = |mass_kg: f64, length_m: f64| {
             DataSheet::new("van", VehicleClass::Van)

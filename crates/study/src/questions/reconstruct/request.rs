@@ -36,7 +36,7 @@ use impactlab_reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStart, sample_from,
 };
 use impactlab_reconstruct::{
-    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, LeftOut,
+    BudgetItem, Car, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCheck, HandSpeed, LeftOut,
     MarkComparison, Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
     SpeedHinge,
 };
@@ -222,14 +222,21 @@ impl ReconstructRequest {
         Ok(Cars::new(evidence, struck.as_ref(), striking.as_ref()))
     }
 
-    /// What the data sheets of the vehicles state and no car has.
-    fn unusual(&self) -> Result<Vec<Caveat>, StudyError> {
-        let mut found = Vec::new();
-        for (choice, subject) in
-            [(&self.vehicle, CaveatSubject::Vehicle), (&self.striking, CaveatSubject::Striking)]
-        {
-            let chosen = choice.chosen()?;
-            found.extend(chosen.iter().flat_map(|vehicle| unusual_sheet(vehicle, subject)));
+    /// What lies outside of what the model is known to hold for, and what the data sheets of the vehicles and the evidence
+    /// state of them and no car has.
+    fn outside(
+        &self,
+        evidence: &Evidence,
+        model: &ForwardModel,
+    ) -> Result<Vec<Caveat>, StudyError> {
+        let mut found = outside_domain(evidence, model.cars(), model.zones());
+        for (choice, car, subject) in [
+            (&self.vehicle, &evidence.struck_car, CaveatSubject::Vehicle),
+            (&self.striking, &evidence.striking_car, CaveatSubject::Striking),
+        ] {
+            let vehicle =
+                Car::sheet_of(car, choice.chosen()?.as_ref()).map(|sheet| sheet.vehicle());
+            found.extend(vehicle.iter().flat_map(|vehicle| unusual_sheet(vehicle, subject)));
         }
         Ok(found)
     }
@@ -394,7 +401,7 @@ impl Question for ReconstructRequest {
             vehicle: "the struck car".to_owned(),
             source,
         })?;
-        let outside = [outside_domain(&evidence, cars, model.zones()), self.unusual()?].concat();
+        let outside = self.outside(&evidence, &model)?;
         let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
         let (mut target, mut particles, flow) = self.sampled(&evidence, model, None, observer)?;
         let why_not = WhyNot::of(self.one_contact, &evidence, target.model(), flow.is_break());
