@@ -180,3 +180,18 @@ fn a_unit_that_is_not_known_is_named_with_its_column() {
     let said = error("t [s];x [yd];y [yd]\n0;0;0\n1;9;0\n", "");
     assert!(said.contains("is in \"yd\", expected a unit of length"), "{said}");
 }
+
+/// Maps write longitude and latitude as x and y.
+#[test]
+fn degrees_that_are_read_as_metres_are_said() {
+    let drive = |x: f64, y: f64, step: f64| {
+        let row = |i: u32| format!("{};{};{y}\n", 0.5 * f64::from(i), x + step * f64::from(i));
+        let rows: String = (0..20).map(row).collect();
+        read(&format!("t;x;y\n{rows}"), "").unwrap()
+    };
+    let degrees = drive(9.0, 52.0, 1e-4);
+    assert!(is_said(&degrees, "map x=east(3 2),y=north(3 2)"), "{:?}", degrees.notes);
+    for metres in [drive(9.0, 52.0, 5.0), drive(9.0, 52.0, 0.0), drive(0.0, 0.0, 1e-4)] {
+        assert!(!is_said(&metres, "longitude"), "{:?}", metres.notes);
+    }
+}
