@@ -444,6 +444,11 @@ mod tests {
             ),
             ("speed_km_h = 54", "vx_m_s = 15", "6:2: target.vy_m_s is missing"),
             (
+                "speed_km_h = 54",
+                "speed_kmh = 54",
+                "6:2: target.speed_m_s (or vx_m_s and vy_m_s), instead of speed_kmh, is missing",
+            ),
+            (
                 "restitution = 0.15",
                 "restitution_form = \"newton\"",
                 "28:20: contact.restitution_form is \"newton\", expected \"normal\" or \

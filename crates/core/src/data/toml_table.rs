@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::data::{TomlError, TomlFile};
 use crate::ranges::Range;
-use crate::units::Unit;
+use crate::units::{Quantity, Unit};
 
 /// A table of a TOML file, with the keys that have been read so far.
 #[derive(Debug)]
@@ -320,10 +320,37 @@ impl<'a> TomlTable<'a> {
         self.last_key.clone()
     }
 
-    /// Builds the error for a required key that is missing, at the place of the table.
+    /// Builds the error for a required key that is missing, at the place of the table. One in a unit that is not known
+    /// is named with it.
     pub fn missing(&self, key: &str) -> TomlError {
         let (line, column) = self.file.line_column(self.at);
-        TomlError::MissingKey { path: self.file.path.to_owned(), line, column, key: self.full(key) }
+        let instead = self.in_other_unit(key).map(|other| format!("{key}, instead of {other},"));
+        let key = self.full(instead.as_deref().unwrap_or(key));
+        TomlError::MissingKey { path: self.file.path.to_owned(), line, column, key }
+    }
+
+    /// A key that nobody has read and that is a required one but for its unit, which is none that is known.
+    ///
+    /// - `key`: in SI units; what stands behind it in words does not count.
+    fn in_other_unit(&self, key: &str) -> Option<&str> {
+        let key = key.split(' ').next()?;
+        let in_si = |quantity: &Quantity| {
+            let suffix = key_with_unit("", &quantity.si_unit());
+            let base = key.strip_suffix(&suffix).filter(|_| !suffix.is_empty())?;
+            Some((suffix.len(), base, *quantity))
+        };
+        let (_, base, quantity) = Quantity::ALL.iter().filter_map(in_si).max_by_key(|of| of.0)?;
+        let has_unit = |name: &str| {
+            quantity.units().iter().any(|unit| name.ends_with(&key_with_unit("", unit)))
+        };
+        for key in self.table.keys() {
+            let name: &str = key.get_ref();
+            let is_same = name.strip_prefix(base).is_some_and(|rest| rest.starts_with('_'));
+            if is_same && !has_unit(name) && !self.used.contains(name) {
+                return Some(name);
+            }
+        }
+        None
     }
 
     /// Builds the error for the last key that was read, which gives the same quantity as the key
