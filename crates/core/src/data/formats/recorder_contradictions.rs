@@ -7,6 +7,7 @@ use crate::data::formats::recorder_table::{
     ROUNDING_M_S, delta_v_pairs, largest_of, no_delta_v, recorded_delta_v,
 };
 use crate::data::spelling::{is_delta_v, trailing_unit};
+use crate::data::stated_side::stated_side;
 use crate::ranges::SPEED;
 use crate::units::Quantity;
 
