@@ -1,7 +1,11 @@
 //! Random draws of whole force curves from a mixture, and the impulse, peak and duration of the
 //! drawn curves.
+//!
+//! The generator is the one of [`random_stream`](crate::numerics::random_stream) and no type parameter: a
+//! generic function is compiled in the crates that call it, some of which are compiled for size.
 
-use rand::{Rng, RngExt as _};
+use rand::RngExt as _;
+use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 use crate::numerics::{latin_normals, latin_uniforms, quantile_of_sorted};
@@ -31,12 +35,12 @@ impl CurveMixture {
     /// k and z fill their space evenly over the draws (Latin hypercube,
     /// [`McKay1979`](crate::bibliography::McKay1979)), so that a few curves stand for the distribution
     /// better than independent ones would. A negative duration is replaced by zero.
-    pub fn sample(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<ForceCurve> {
+    pub fn sample(&self, n_samples: usize, rng: &mut ChaCha8Rng) -> Vec<ForceCurve> {
         self.draw(n_samples, rng).into_iter().map(|(_, curve)| curve).collect()
     }
 
     /// Draws as [`Self::sample`], each with the index of its component.
-    fn draw(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<(usize, ForceCurve)> {
+    fn draw(&self, n_samples: usize, rng: &mut ChaCha8Rng) -> Vec<(usize, ForceCurve)> {
         let mut drawn = Vec::with_capacity(n_samples);
         let components = latin_uniforms(n_samples, rng);
         let n_factors = self.components().iter().map(|component| component.factors.ncols()).max();
@@ -57,13 +61,15 @@ impl CurveMixture {
                     *value += z * factor;
                 }
             }
-            let (n_instants, phi) = (own.len() / 2, component.lag_correlation);
-            let (mut noise, fresh) = (0.0, (1.0 - phi * phi).sqrt());
-            for (i, (value, deviation)) in values.iter_mut().zip(own).enumerate() {
-                let new: f64 = rng.sample(StandardNormal);
-                let is_first = i.is_multiple_of(n_instants.max(1));
-                noise = if is_first { new } else { phi * noise + fresh * new };
-                *value += deviation * noise;
+            let (n_instants, phi) = ((own.len() / 2).max(1), component.lag_correlation);
+            let fresh = (1.0 - phi * phi).sqrt();
+            for (values, own) in values.chunks_mut(n_instants).zip(own.chunks(n_instants)) {
+                let mut noise = 0.0;
+                for (i, (value, deviation)) in values.iter_mut().zip(own).enumerate() {
+                    let new: f64 = rng.sample(StandardNormal);
+                    noise = if i == 0 { new } else { phi * noise + fresh * new };
+                    *value += deviation * noise;
+                }
             }
             let mut curve = ForceCurve::from_values(&values);
             curve.duration_s = curve.duration_s.max(0.0);
@@ -77,7 +83,7 @@ impl CurveMixture {
     pub fn sample_quantities(
         &self,
         n_samples: usize,
-        rng: &mut impl Rng,
+        rng: &mut ChaCha8Rng,
     ) -> (Vec<ForceCurve>, CurveQuantities) {
         let drawn = self.draw(n_samples, rng);
         let peak_of_mean =
@@ -134,7 +140,6 @@ impl CurveQuantities {
 mod tests {
     use nalgebra::DMatrix;
     use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
 
     use super::*;
     use crate::uncertainty::PeakFactors;

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -104,7 +105,8 @@ impl ForceForecast {
     pub fn new(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
         let mut rng = random_stream(settings.seed, "draws", 0);
         let n_draws = N_DRAWS.max(settings.n_curves);
-        let (mut curves, draws) = mixture.sample_quantities(n_draws, &mut rng);
+        let drawn = || mixture.sample_quantities(n_draws, &mut rng);
+        let ((mut curves, draws), modes) = rayon::join(drawn, || modes(mixture, settings.seed));
         curves.truncate(settings.n_curves);
         // As drawn: what lies below zero is zero.
         let duration_s = bands_of(&mixture.duration_s()).mapped(|time_s| time_s.max(0.0));
@@ -119,7 +121,7 @@ impl ForceForecast {
             duration_s,
             mean,
             curves,
-            modes: modes(mixture, settings.seed)?,
+            modes: modes?,
         })
     }
 }
@@ -138,7 +140,7 @@ fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
 
 /// Components of a mixture with the quantities that are shown, in descending order of weight.
 fn modes(mixture: &CurveMixture, seed: u64) -> Result<Vec<Mode>, MixtureError> {
-    let mode = |(idx, component): (usize, &CurveComponent)| {
+    let mode = |(idx, component): (usize, &CurveComponent)| -> Result<Mode, MixtureError> {
         let mean = ForceCurve::from_values(&component.mean);
         let alone = CurveMixture::new(vec![CurveComponent { weight: 1.0, ..component.clone() }])?;
         let mut rng = random_stream(seed, "peaks of a course", idx as u64);
@@ -150,7 +152,7 @@ fn modes(mixture: &CurveMixture, seed: u64) -> Result<Vec<Mode>, MixtureError> {
             duration_s: mean.duration_s.max(0.0),
         })
     };
-    let modes = mixture.components().iter().enumerate().map(mode);
+    let modes = mixture.components().par_iter().enumerate().map(mode);
     let mut modes = modes.collect::<Result<Vec<Mode>, MixtureError>>()?;
     modes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     Ok(modes)
