@@ -130,12 +130,20 @@ impl Frame {
         let flat = a.color == b.color && b.color == c.color;
         let untextured = a.uv == b.uv && b.uv == c.uv;
         let constant_texel = untextured.then(|| sample(texture, a.uv));
+        let even = constant_texel.filter(|_| flat).map(|texel| textured(channels(a.color), texel));
         let edges = [(b, c), (c, a), (a, b)].map(|(from, to)| Edge { from: from.pos, to: to.pos });
         let columns = pixel_range(bounds.min.x, bounds.max.x, self.width);
         for y in pixel_range(bounds.min.y, bounds.max.y, self.height) {
             let y_center = y as f32 + 0.5;
             let inside = |columns: Range<usize>, edge: &Edge| edge.owned(columns, y_center);
-            for x in edges.iter().fold(columns.clone(), inside) {
+            let columns = edges.iter().fold(columns.clone(), inside);
+            if let Some(over) = even {
+                let row = y * self.width;
+                let pixels = self.pixels.get_mut(row + columns.start..row + columns.end);
+                blend_all(pixels.unwrap_or_default(), over);
+                continue;
+            }
+            for x in columns {
                 let p = Pos2::new(x as f32 + 0.5, y_center);
                 let [wa, wb, wc] = edges.map(|edge| edge.area(p) / area);
                 let color = if flat {
@@ -148,7 +156,7 @@ impl Frame {
                     sample(texture, uv.to_pos2())
                 });
                 let pixel = &mut self.pixels[y * self.width + x];
-                *pixel = blend(*pixel, std::array::from_fn(|i| color[i] * texel[i] / 255.0));
+                *pixel = blend(*pixel, textured(color, texel));
             }
         }
     }
@@ -225,6 +233,22 @@ fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
         let row = |pair: [[f32; 4]; 2]| pair[0][i] * (1.0 - fx) + pair[1][i] * fx;
         row(top) * (1.0 - fy) + row(bottom) * fy
     })
+}
+
+/// A colour times one of a texture.
+fn textured(color: [f32; 4], texel: [f32; 4]) -> [f32; 4] {
+    std::array::from_fn(|i| color[i] * texel[i] / 255.0)
+}
+
+/// The same colour composited over every pixel.
+fn blend_all(pixels: &mut [Color32], over: [f32; 4]) {
+    if over[3] == 255.0 {
+        pixels.fill(blend(Color32::TRANSPARENT, over));
+        return;
+    }
+    for pixel in pixels {
+        *pixel = blend(*pixel, over);
+    }
 }
 
 /// The colour `over` composited over `under`; both are premultiplied.
