@@ -23,7 +23,7 @@ mod ticks;
 pub use caveats::picture_ui;
 pub use density::{DensityError, DensityGpu};
 pub use gpu::GpuError;
-pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
+pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_figures, save_png};
 pub use plot::{Backdrop, FigureOptions, FigureResponse, figure_ui};
 pub use report::{report_drawing, report_picture};
 pub use software::SoftwareRenderer;

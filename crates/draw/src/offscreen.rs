@@ -1,10 +1,11 @@
 //! Pictures of figures and user interfaces without a window.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui::epaint::ClippedShape;
 use egui::{Color32, Context, FullOutput, Pos2, RawInput, Rect, Ui, Vec2};
 use image::RgbaImage;
+use rayon::prelude::*;
 
 use crate::{SoftwareRenderer, picture_ui, theme};
 use impactlab_core::data::{DataError, Existing, write_atomically};
@@ -133,6 +134,18 @@ pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, Render
     draw_offscreen(canvas, |ui| {
         let frame = egui::Frame::new().inner_margin(12.0);
         frame.show(ui, |ui| picture_ui(ui, figure));
+    })
+}
+
+/// Draws figures on [`Canvas::default`], several side by side, and saves each as PNG ([`save_png`]).
+///
+/// - `existing`: what happens to files that exist already.
+///
+/// # Errors
+/// [`RenderError::Write`], as for [`save_png`].
+pub fn save_figures(figures: &[(PathBuf, &Figure)], existing: Existing) -> Result<(), RenderError> {
+    figures.par_iter().try_for_each(|(path, figure)| {
+        save_png(&figure_image(figure, Canvas::default())?, path, existing)
     })
 }
 

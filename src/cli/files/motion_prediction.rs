@@ -1,6 +1,6 @@
 //! The files of `impactlab predict`: tables, density map, pictures with their numbers.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::cli::CliError;
 use impactlab_core::data::{Existing, write_atomically, write_restricted_table};
@@ -58,6 +58,7 @@ pub(in crate::cli) fn write_motion_prediction(
         let name = channel.channel.header().to_owned();
         figures.push((name, forecast_channel_figure(&input, channel)));
     }
+    let mut pictures: Vec<(PathBuf, &Figure)> = Vec::new();
     for (name, figure) in &figures {
         let csv = format!("{name}.csv");
         write_atomically(&path(&csv), Existing::Refuse, |file| {
@@ -65,16 +66,11 @@ pub(in crate::cli) fn write_motion_prediction(
         })?;
         files.push(csv);
         let png = format!("{name}.png");
-        write_png(figure, &path(&png))?;
+        pictures.push((path(&png), figure));
         files.push(png);
     }
+    impactlab_draw::save_figures(&pictures, Existing::Refuse)?;
     Ok(files)
-}
-
-fn write_png(figure: &Figure, path: &Path) -> Result<(), CliError> {
-    let image = impactlab_draw::figure_image(figure, impactlab_draw::Canvas::default())?;
-    impactlab_draw::save_png(&image, path, Existing::Refuse)?;
-    Ok(())
 }
 
 /// Writes the motion over time. After a second contact, which is not computed, cells of standard deviations
