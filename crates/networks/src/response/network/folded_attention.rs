@@ -2,7 +2,7 @@
 
 use candle_core::Tensor;
 
-use crate::nn::NnError;
+use crate::nn::{NnError, product, product_with_transposed};
 use crate::response::network::one_step::token_tensor;
 use crate::response::network::response_network::ResponseNetwork;
 use impactlab_core::vehicle::VehicleParameters;
@@ -38,8 +38,8 @@ impl FoldedAttention {
             found.ok_or(NnError::MissingTensor { name })
         };
         let project = |name: &str| -> Result<Tensor, NnError> {
-            let weight = get(&format!("{name}.weight"))?;
-            Ok(tokens.matmul(&weight.t()?)?.broadcast_add(&get(&format!("{name}.bias"))?)?)
+            let weighted = product_with_transposed(&tokens, &get(&format!("{name}.weight"))?)?;
+            Ok(weighted.broadcast_add(&get(&format!("{name}.bias"))?)?)
         };
         let (keys, values) = (project("key")?, project("value")?);
         let (query, query_bias) = (get("query.weight")?, get("query.bias")?);
@@ -54,10 +54,10 @@ impl FoldedAttention {
                 |tensor: &Tensor, dim: usize| tensor.narrow(dim, head * width, width)?.contiguous();
             let keys = (of_head(&keys, 1)? * scale)?;
             // [tokens, width] · [width, hidden]
-            scores.push(keys.matmul(&of_head(&query, 0)?)?);
-            biases.push(keys.matmul(&of_head(&query_bias, 0)?.unsqueeze(1)?)?.squeeze(1)?);
+            scores.push(product(&keys, &of_head(&query, 0)?)?);
+            biases.push(product(&keys, &of_head(&query_bias, 0)?.unsqueeze(1)?)?.squeeze(1)?);
             // [tokens, width] · [width, hidden]
-            seen.push(of_head(&values, 1)?.matmul(&of_head(&output, 1)?.t()?.contiguous()?)?);
+            seen.push(product_with_transposed(&of_head(&values, 1)?, &of_head(&output, 1)?)?);
         }
         Ok(Self {
             scores: Tensor::cat(&scores, 0)?.t()?.contiguous()?.detach(),
