@@ -141,8 +141,12 @@ impl Dynamics<'_> {
                 if buffers.batch.has_share() {
                     motion.probabilities.push(probability);
                 }
+                let std = match &motion.draw.noise {
+                    Some(_) => self.noise(at, &buffers.batch),
+                    None => [0.0; N_RESIDUAL],
+                };
                 if let Some(state) = motion.states.last_mut() {
-                    motion.draw.add_noise(state, self.noise(at, &buffers.batch));
+                    motion.draw.add_noise(state, std);
                 }
             }
         }

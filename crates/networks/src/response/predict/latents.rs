@@ -223,6 +223,8 @@ impl Latents {
 /// ```text
 /// E = (φ(a) − φ(b)) n      E z² = 1 + (a φ(a) − b φ(b)) n      a, b: its ends
 /// ```
+///
+/// The mean of the middle one is exactly zero.
 fn part_of_normal(j: usize, n: usize) -> LatentShare {
     let n_parts = n.max(1) as f64;
     let end = |k: usize| match k {
@@ -233,7 +235,7 @@ fn part_of_normal(j: usize, n: usize) -> LatentShare {
     let (low, high) = (end(j), end(j + 1));
     let density = |end: Option<f64>| end.map_or(0.0, normal_density);
     let first = |end: Option<f64>| end.map_or(0.0, |z| z * normal_density(z));
-    let mean = (density(low) - density(high)) * n_parts;
+    let mean = if 2 * j + 1 == n { 0.0 } else { (density(low) - density(high)) * n_parts };
     let square = 1.0 + (first(low) - first(high)) * n_parts;
     LatentShare { mean, variance: (square - mean * mean).max(0.0) }
 }
@@ -251,6 +253,7 @@ mod tests {
                 parts.iter().map(|part| part.variance + part.mean.powi(2)).sum::<f64>() / n as f64;
             assert!(mean.abs() < 1e-12 && (square - 1.0).abs() < 1e-12, "{n}: {mean} {square}");
         }
+        assert_eq!([part_of_normal(1, 3), part_of_normal(2, 5)].map(|part| part.mean), [0.0; 2]);
         // E z given z > Φ⁻¹(2/3) = 3 φ(0.4307) = 1.0908
         assert!((part_of_normal(2, 3).mean - 1.0908).abs() < 1e-4);
     }

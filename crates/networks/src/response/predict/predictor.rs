@@ -228,7 +228,14 @@ impl Predictor {
     /// - `rng`: of the motion.
     pub(super) fn drawn_motion(&self, weights: &[f64], mut rng: ChaCha8Rng) -> MotionDraw {
         let component = drawn(weights, rng.random());
-        let shares = self.latents.component_shares(component, weights.len());
+        self.drawn_in(component, rng)
+    }
+
+    /// A motion of a component with noise, drawn.
+    ///
+    /// - `rng`: of the motion, after the component was drawn.
+    pub(super) fn drawn_in(&self, component: usize, mut rng: ChaCha8Rng) -> MotionDraw {
+        let shares = self.latents.component_shares(component, self.n_components());
         let width = self.latents.width(rng.random());
         let latents = std::array::from_fn(|m| {
             width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
@@ -238,7 +245,7 @@ impl Predictor {
 }
 
 /// Motions of the components as paths, whose weights are scaled to sum to one.
-pub(super) fn weighted(followed: Vec<FollowedMotion>) -> Vec<ComponentPath> {
+fn weighted(followed: Vec<FollowedMotion>) -> Vec<ComponentPath> {
     let sum: f64 = followed.iter().map(|motion| motion.weight).sum();
     let path = |motion: FollowedMotion| ComponentPath {
         weight: motion.weight / sum,

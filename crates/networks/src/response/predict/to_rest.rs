@@ -10,11 +10,12 @@
 //! on, which motions of a few seconds say little about; rolling resistance and air drag are therefore drawn
 //! for that time. As long as the network has a say, motions are followed side by side.
 
+use rand::RngExt;
 use rayon::prelude::*;
 
 use crate::response::predict::abreast::{FollowedMotion, MotionDraw};
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
-use crate::response::predict::predictor::{central_of, weighted};
+use crate::response::predict::predictor::{central_of, drawn};
 use crate::response::{N_LATENTS, Predictor, STEP_S};
 use impactlab_core::numerics::{MAX_LANES, random_stream};
 use impactlab_core::vehicle::{RestWatch, VehicleInput, VehicleParameters, VehicleState};
@@ -53,6 +54,16 @@ pub struct SettledMotions {
     pub draws: Vec<SettledMotion>,
 }
 
+/// Motions of the components of a network.
+struct Components {
+    /// The path with every latent factor at zero, followed to rest.
+    central: Vec<VehicleState<f64>>,
+    /// Probabilities of the components.
+    weights: Vec<f64>,
+    /// What was followed beside them, as far as the network has learned.
+    beside: Vec<(FollowedMotion, RestWatch)>,
+}
+
 impl Predictor {
     /// How long the motions were that the model has learned from, s.
     pub fn learned_s(&self) -> f64 {
@@ -87,22 +98,14 @@ impl Predictor {
         search: &RestSearch,
     ) -> SettledMotions {
         let fitted = self.fitted_to(initial, inputs);
-        let dynamics = fitted.dynamics();
-        let (central, weights) = self.settled_components(&fitted, initial, inputs);
         let (learned, rest) = fitted.split_at_learned(inputs);
-        let draw = |&idx: &usize| {
-            let rng = random_stream(search.seed, "motions to rest", idx as u64);
-            let mut draw = fitted.drawn_motion(&weights, rng);
+        let stream = |idx: usize| random_stream(search.seed, "motions to rest", idx as u64);
+        let with_factors = |mut draw: MotionDraw| {
             let factors = search.resistance_scatter.map(|scatter| (scatter * draw.normal()).exp());
             (draw, factors)
         };
-        let settle = |numbers: &[usize]| {
-            let (draws, factors): (Vec<MotionDraw>, Vec<[f64; 2]>) =
-                numbers.iter().map(&draw).unzip();
-            let mut watches: Vec<RestWatch> =
-                draws.iter().map(|_| watch(&fitted.vehicle, inputs)).collect();
-            let motions = settling(&dynamics, draws, &mut watches, initial, learned);
-            let go_on = |((mut motion, mut watch), factors): ((FollowedMotion, RestWatch), _)| {
+        let go_on =
+            |((mut motion, mut watch), factors): ((FollowedMotion, RestWatch), [f64; 2])| {
                 if !rest.is_empty() {
                     let resisted = with_resistance(&fitted.vehicle, factors);
                     let beyond = Dynamics::new(&resisted, &fitted.network, &fitted.latents);
@@ -110,7 +113,32 @@ impl Predictor {
                 }
                 settled(motion, &watch)
             };
-            motions.into_iter().zip(watches).zip(factors).map(go_on).collect::<Vec<_>>()
+        // By itself a single draw would take as long as all components, one lane of the vector registers and
+        // the others empty. So it goes beside them, once in each component, of which one is chosen then.
+        if let [idx] = draws {
+            let mut rng = stream(*idx);
+            let share: f64 = rng.random();
+            let in_component = |j: usize| with_factors(fitted.drawn_in(j, rng.clone()));
+            let (beside, factors): (Vec<MotionDraw>, Vec<[f64; 2]>) =
+                (0..fitted.n_components()).map(in_component).unzip();
+            let Components { central, weights, beside } =
+                self.settled_components(&fitted, initial, inputs, beside);
+            let chosen = beside.into_iter().zip(factors).nth(drawn(&weights, share));
+            return SettledMotions { central, draws: chosen.map(&go_on).into_iter().collect() };
+        }
+        let Components { central, weights, .. } =
+            self.settled_components(&fitted, initial, inputs, Vec::new());
+        let dynamics = fitted.dynamics();
+        let settle = |numbers: &[usize]| {
+            let draw = |&idx: &usize| with_factors(fitted.drawn_motion(&weights, stream(idx)));
+            let (draws, factors): (Vec<MotionDraw>, Vec<[f64; 2]>) =
+                numbers.iter().map(draw).unzip();
+            let mut watches: Vec<RestWatch> =
+                draws.iter().map(|_| watch(&fitted.vehicle, inputs)).collect();
+            let motions = dynamics.follow(draws, initial, learned, |idx, time_s, state| {
+                !watches.get_mut(idx).is_some_and(|watch| watch.has_settled(time_s, state))
+            });
+            motions.into_iter().zip(watches).zip(factors).map(&go_on).collect::<Vec<_>>()
         };
         SettledMotions {
             central,
@@ -119,36 +147,57 @@ impl Predictor {
     }
 
     /// The path with every latent factor at zero, followed to rest, and the probabilities of the
-    /// components.
+    /// components: of motions with their mean factors, over all steps, at rest or not.
     ///
-    /// - `fitted`: this predictor for motions under these inputs.
+    /// - `fitted`: this predictor for motions under these inputs;
+    /// - `beside`: motions that are followed in the same registers.
     fn settled_components(
         &self,
         fitted: &Self,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
-    ) -> (Vec<VehicleState<f64>>, Vec<f64>) {
+        beside: Vec<MotionDraw>,
+    ) -> Components {
         // What a component weighs is known as far as the network is.
         let (learned, rest) = fitted.split_at_learned(inputs);
-        let n = fitted.n_components();
+        let (n, dynamics) = (fitted.n_components(), fitted.dynamics());
+        // Where the mean factors are zero, one motion is both.
+        let is_both: Vec<bool> =
+            (0..n).map(|j| rest.is_empty() && fitted.mean_latents(j) == [0.0; N_LATENTS]).collect();
         let mut draws: Vec<MotionDraw> =
             (0..n).map(|j| MotionDraw::certain(j, [0.0; N_LATENTS])).collect();
-        if rest.is_empty() {
-            draws.extend((0..n).map(|j| MotionDraw::certain(j, fitted.mean_latents(j))));
+        draws.extend(beside);
+        let mut watches: Vec<RestWatch> =
+            draws.iter().map(|_| watch(&fitted.vehicle, inputs)).collect();
+        for (j, _) in is_both.iter().enumerate().filter(|(_, both)| rest.is_empty() && !**both) {
+            draws.push(MotionDraw::certain(j, fitted.mean_latents(j)));
         }
-        let mut watches: Vec<RestWatch> = (0..n).map(|_| watch(&fitted.vehicle, inputs)).collect();
-        let dynamics = fitted.dynamics();
-        let mut motions = settling(&dynamics, draws, &mut watches, initial, learned);
-        let at_means = motions.split_off(n);
-        for (motion, watch) in motions.iter_mut().zip(&mut watches) {
+        let mut motions = dynamics.follow(draws, initial, learned, |idx, time_s, state| {
+            let watch = watches.get_mut(idx).filter(|_| is_both.get(idx) != Some(&true));
+            !watch.is_some_and(|watch| watch.has_settled(time_s, state))
+        });
+        let mut at_means = motions.split_off(watches.len()).into_iter();
+        let beside = motions.split_off(n).into_iter().zip(watches.split_off(n)).collect();
+        let weights = match rest.is_empty() {
+            true => {
+                let own = motions.iter().zip(&is_both);
+                let weighed = own.filter_map(|(motion, both)| match both {
+                    true => Some(motion.weight),
+                    false => at_means.next().map(|motion| motion.weight),
+                });
+                let weights: Vec<f64> = weighed.collect();
+                let sum: f64 = weights.iter().sum();
+                weights.into_iter().map(|weight| weight / sum).collect()
+            }
+            false => self.paths(initial, learned).iter().map(|path| path.weight).collect(),
+        };
+        for ((motion, watch), both) in motions.iter_mut().zip(&mut watches).zip(is_both) {
+            if both {
+                end_at_rest(motion, watch);
+            }
             follow_on(&dynamics, motion, watch, inputs, learned.len());
         }
-        let paths = match rest.is_empty() {
-            true => weighted(at_means),
-            false => self.paths(initial, learned),
-        };
-        let weights = paths.iter().map(|path| path.weight).collect();
-        (central_of(&motions), weights)
+        Components { central: central_of(&motions), weights, beside }
     }
 }
 
@@ -172,20 +221,16 @@ fn watch(vehicle: &VehicleParameters, inputs: &[VehicleInput<f64>]) -> RestWatch
     RestWatch::after(last_change as f64 * STEP_S).of(vehicle)
 }
 
-/// Follows motions side by side.
-///
-/// - `watches`: of the first ones, which end where they have come to rest; the others are followed to the
-///   end of the inputs.
-fn settling(
-    dynamics: &Dynamics<'_>,
-    draws: Vec<MotionDraw>,
-    watches: &mut [RestWatch],
-    initial: &VehicleState<f64>,
-    inputs: &[VehicleInput<f64>],
-) -> Vec<FollowedMotion> {
-    dynamics.follow(draws, initial, inputs, |idx, time_s, state| {
-        !watches.get_mut(idx).is_some_and(|watch| watch.has_settled(time_s, state))
-    })
+/// Ends a motion that was followed to the end of its inputs where its vehicle has come to rest.
+fn end_at_rest(motion: &mut FollowedMotion, watch: &mut RestWatch) {
+    let FollowedMotion { states, probabilities, .. } = motion;
+    let n_steps = states.len().saturating_sub(1);
+    let mut instants = states.iter().take(n_steps).enumerate();
+    let at_rest = instants.position(|(i, state)| watch.has_settled(i as f64 * STEP_S, state));
+    if let Some(step) = at_rest {
+        states.truncate(step + 1);
+        probabilities.truncate(step);
+    }
 }
 
 /// Follows a motion further, if it was not over before.
@@ -283,6 +328,9 @@ mod tests {
                 let expected = by_itself(&predictor, draw, &search, initial, &inputs);
                 assert_eq!(*motion, expected, "{learned_s} s, draw {idx}");
             }
+            let single = predictor.settled(&initial, &inputs, &numbers[3..4], &search);
+            assert_eq!(single.draws, settled.draws[3..4], "{learned_s} s, a single draw");
+            assert_eq!(single.central, settled.central, "{learned_s} s, a single draw");
         }
     }
 
