@@ -361,14 +361,15 @@ fn what_a_killed_unpacking_has_left_is_swept_and_a_living_one_is_not() {
     pack(&case, &folder.join("a.zip"), Existing::Refuse).expect("packed");
     let [dead, living] = ["dead", "living"].map(|n| folder.join(format!(".impactlab-unpack-{n}")));
     for staging in [&dead, &living] {
-        fs::create_dir_all(staging.join("files")).expect("a folder");
+        fs::create_dir_all(staging.join("unpacked/files")).expect("a folder");
+        fs::write(staging.join(".unpacked.impactlab-lock"), "1").expect("what is left of a lock");
     }
-    let _lock = WriterLock::lock_file(&living).expect("a lock");
+    let _lock = WriterLock::lock_file(&living.join("unpacked")).expect("a lock");
     unpack(&folder.join("a.zip"), &folder.join("to")).expect("unpacked");
     assert!(!dead.exists() && living.exists());
     let hidden = fs::read_dir(&folder).expect("a folder").flatten();
     let hidden = hidden.filter(|entry| entry.file_name().to_string_lossy().starts_with('.'));
-    assert_eq!(hidden.count(), 2, "the folder of the living one and its lock");
+    assert_eq!(hidden.count(), 1, "the folder of the living one, with its lock");
 }
 
 #[test]

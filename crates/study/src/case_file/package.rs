@@ -37,6 +37,9 @@ const MAX_RATIO: u64 = 100;
 
 /// Beginning of the names of folders in which packages are being unpacked.
 const STAGING: &str = ".impactlab-unpack-";
+/// What is unpacked, in such a folder. Its lock is beside it there, so that all that a killed run leaves is in
+/// one place.
+const UNPACKED: &str = "unpacked";
 
 /// A file that went into a package.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -183,21 +186,20 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
     sweep_staging(parent);
     let staging =
         tempfile::Builder::new().prefix(STAGING).tempdir_in(parent).map_err(io(parent))?;
-    let lock = WriterLock::lock_file(staging.path())?;
+    let unpacked = staging.path().join(UNPACKED);
+    let _lock = WriterLock::lock_file(&unpacked)?;
+    fs::create_dir(&unpacked).map_err(io(&unpacked))?;
     for i in 0..archive.len() {
-        extract(&mut archive, i, [staging.path(), &absolute], package)?;
+        extract(&mut archive, i, [&unpacked, &absolute], package)?;
     }
     // What is wrong with it is told of the place that it would have.
-    let text = read_utf8(&staging.path().join(&case), MAX_RESULTS_BYTES)?;
+    let text = read_utf8(&unpacked.join(&case), MAX_RESULTS_BYTES)?;
     CaseFile::parse(&text, &absolute.join(&case))?;
-    fs::rename(staging.path(), &absolute).map_err(|source| match absolute.exists() {
+    fs::rename(&unpacked, &absolute).map_err(|source| match absolute.exists() {
         // Another process has made it by now.
         true => CaseError::FolderExists { path: folder.to_owned() },
         false => io(folder)(source),
     })?;
-    // Its place is taken by the folder.
-    let _ = staging.keep();
-    drop(lock);
     Ok(absolute.join(case))
 }
 
@@ -301,7 +303,7 @@ fn sweep_staging(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let is_staging = entry.file_name().to_string_lossy().starts_with(STAGING)
             && entry.file_type().is_ok_and(|kind| kind.is_dir());
-        if is_staging && let Ok(_lock) = WriterLock::lock_file(&entry.path()) {
+        if is_staging && let Ok(_lock) = WriterLock::lock_file(&entry.path().join(UNPACKED)) {
             // One that cannot be removed stands in nobody's way.
             let _ = fs::remove_dir_all(entry.path());
         }
