@@ -140,19 +140,25 @@ impl SimulateRequest {
         }
     }
 
+    /// A vehicle with the equations of motion and on the road that the question says; both vehicles of a
+    /// collision have the same.
+    fn as_asked(&self, mut vehicle: VehicleParameters) -> VehicleParameters {
+        if let Some(equations) = self.equations {
+            vehicle = vehicle.with_equations(equations);
+        }
+        if let Some(friction) = self.friction {
+            vehicle = vehicle.with_friction(friction);
+        }
+        vehicle
+    }
+
     fn settings(
         &self,
         open: &OpenVehicle<'_>,
         named_striking: Option<&str>,
         caveats: &mut Caveats,
     ) -> Result<Settings, StudyError> {
-        let mut struck = struck_vehicle(&self.vehicle, open, caveats)?;
-        if let Some(equations) = self.equations {
-            struck = struck.with_equations(equations);
-        }
-        if let Some(friction) = self.friction {
-            struck = struck.with_friction(friction);
-        }
+        let struck = self.as_asked(struck_vehicle(&self.vehicle, open, caveats)?);
         let (friction_zones, slope) = self.ground()?;
         let has_striking = match &self.source {
             MotionSource::Scenario { scenario, .. } => scenario.load()?.striking.fixed.is_none(),
@@ -163,7 +169,7 @@ impl SimulateRequest {
         };
         let mut unused = Caveats::default();
         let assumed = if has_striking { caveats } else { &mut unused };
-        let striking = striking_vehicle(&self.striking, named_striking, assumed)?;
+        let striking = self.as_asked(striking_vehicle(&self.striking, named_striking, assumed)?);
         assumed.extend(assumed::medians(CaveatSubject::StrikingParameter, &striking));
         Ok(Settings {
             struck: struck.on_slope(slope),
@@ -219,13 +225,7 @@ impl SimulateRequest {
         }
         caveats.extend(by_recorded_pair(self));
         let (friction_zones, slope) = self.ground()?;
-        let vehicle = |i: usize| {
-            let vehicle = case.vehicles[i].clone().on_slope(slope);
-            match self.equations {
-                Some(equations) => vehicle.with_equations(equations),
-                None => vehicle,
-            }
-        };
+        let vehicle = |i: usize| self.as_asked(case.vehicles[i].clone()).on_slope(slope);
         let settings = Settings {
             struck: vehicle(0),
             striking: vehicle(1),

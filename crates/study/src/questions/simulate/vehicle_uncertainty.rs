@@ -147,6 +147,18 @@ mod tests {
         MotionSource::Scenario { scenario, pulse: PulseSetup::default() }
     }
 
+    /// The striking vehicle kept the friction of its own file.
+    #[test]
+    fn the_friction_of_a_question_is_that_of_both_vehicles() {
+        let request =
+            SimulateRequest { friction: Some(0.4), alone: true, ..SimulateRequest::new(pit()) };
+        let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+        let answer = request.answer(&Library::default(), &mut go_on).unwrap();
+        let analysis = answer.complete().unwrap().analysis;
+        let striking = &analysis.striking.as_ref().unwrap().start.vehicle;
+        assert_eq!([&analysis.vehicle, striking].map(|it| it.tires.friction), [0.4, 0.4]);
+    }
+
     #[test]
     fn what_the_data_sheet_leaves_open_spreads_the_end() {
         let report = report(pit(), "toyota-camry-2018", 60);
