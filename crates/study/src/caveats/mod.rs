@@ -3,6 +3,7 @@
 pub(crate) mod assumed;
 pub(crate) mod bodies;
 pub(crate) mod driver;
+pub(crate) mod few_draws;
 pub(crate) mod other_vehicle;
 pub(crate) mod restrictions;
 pub(crate) mod unused;

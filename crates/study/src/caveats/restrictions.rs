@@ -1,6 +1,7 @@
 //! What restricts an answer: findings that a report has in a form of its own, as caveats.
 
-use crate::analysis::{MonteCarloError, RestOutcome, Rival, RivalForce};
+use crate::analysis::{RestOutcome, Rival, RivalForce};
+use crate::caveats::few_draws::{few_draws, independent_draws};
 use crate::questions::predict::implied_contact::{
     LEAST_P_RIGID, MOST_P_ENERGY_GAIN, warning_phrase,
 };
@@ -21,9 +22,6 @@ use impactlab_core::vehicle::{
     ContactPoint, REST_SPEED_M_S, RoadSlope, USUAL_SLOPE, VehicleParameters,
 };
 use impactlab_networks::response::{OutsideDomain, STEP_S};
-
-/// Largest standard error of the end of an interval by the number of draws, as a share of the width.
-const MOST_CHANCE: f64 = 0.1;
 
 /// Speed against the heading from which a vehicle moves backwards, m/s; slower ones roll back or slip.
 const BACKWARDS_M_S: f64 = 0.5;
@@ -201,30 +199,12 @@ pub(crate) fn simulation_caveats(report: &SimulateReport, until_rest: bool) -> V
     let moving = moving.map(|end| motion_caveat(end.speed_m_s, report.duration_s));
     let n_failed = report.uncertainty.as_ref().map_or(0, |uncertainty| uncertainty.n_failed);
     let left_out = left_out_caveat(n_failed, "vehicles drawn from the data sheet");
-    let drawn = report.uncertainty.as_ref().and_then(|uncertainty| uncertainty.monte_carlo);
-    let few = drawn.and_then(|error| few_draws_caveat(&error));
+    let few = report.uncertainty.as_ref().and_then(|uncertainty| {
+        let n_draws = uncertainty.n_draws - uncertainty.n_failed;
+        few_draws(n_draws, uncertainty.monte_carlo.as_ref())
+    });
     let flags = report.flags.iter().map(|flag| flag.caveat.clone());
     flags.chain(moving).chain(left_out).chain(few).collect()
-}
-
-/// Draws that are so few that with another seed the intervals would be others.
-fn few_draws_caveat(error: &MonteCarloError) -> Option<Caveat> {
-    let share = error.interval_share;
-    let text = || {
-        Phrase::new(
-            "an end of a 90 % interval is uncertain by {0} of the interval's width, because so few \
-             draws were made",
-            "Ein Ende eines 90-%-Intervalls ist um {0} der Intervallbreite unsicher, weil so wenige \
-             Ziehungen gemacht wurden",
-        )
-        .with(PhraseValue::Share(share))
-    };
-    let is_much = share > MOST_CHANCE || share.is_nan();
-    is_much.then(|| {
-        Caveat::new(CaveatKind::FewDraws, text())
-            .with_value("standard error of an end over the width of the interval", share)
-            .with_range([0.0, MOST_CHANCE])
-    })
 }
 
 /// How many cases raise each kind of flag.
@@ -347,7 +327,7 @@ pub(crate) fn predicted_motion_caveats(
         None => (!end.is_at_rest).then(|| motion_caveat(end.speed_m_s, end.time_s)),
     };
     let beyond = duration_caveat(report);
-    let few = end.monte_carlo.as_ref().and_then(few_draws_caveat);
+    let few = few_draws(independent_draws(report), end.monte_carlo.as_ref());
     let outside = predicted.iter().cloned().chain(domain).chain(beyond);
     let apart = report.rival.as_ref().and_then(disagreement_caveat);
     outside.chain(contact).chain(flags).chain(moving).chain(few).chain(apart).collect()
