@@ -1,11 +1,11 @@
-//! What the drivers do, where nobody has said it.
+//! What the drivers do, where nobody has said it, or where what is said cannot be meant.
 
 use crate::{MotionSource, SimulateRequest, StudyError};
 use impactlab_core::collision::Scenario;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
-use impactlab_core::units::Phrase;
+use impactlab_core::units::{Phrase, PhraseValue};
 
-/// What nobody has said of the drivers of both vehicles.
+/// What nobody has said of the drivers of both vehicles, and whether one of a PIT turns the wrong way.
 ///
 /// # Errors
 /// [`StudyError`] if the scenario cannot be read.
@@ -18,7 +18,34 @@ pub(crate) fn open_drivers(question: &SimulateRequest) -> Result<Vec<Caveat>, St
     };
     let of_striking = scenario.as_ref().filter(|_| !question.one_contact);
     let of_striking = of_striking.and_then(|scenario| open_striking(scenario, question.until_rest));
-    Ok(open_struck(question, scenario.as_ref()).into_iter().chain(of_striking).collect())
+    let turned = scenario.as_ref().and_then(turns_away);
+    Ok(open_struck(question, scenario.as_ref())
+        .into_iter()
+        .chain(of_striking)
+        .chain(turned)
+        .collect())
+}
+
+/// A driver of a PIT who turns away from the car that he strikes, as to the left where his side was not
+/// said and the other car is to his right.
+fn turns_away(scenario: &Scenario) -> Option<Caveat> {
+    let (to_left_of_struck, _) = scenario.struck_from_beside()?;
+    let driver = scenario.striking_ending.as_ref()?.pit.as_ref()?;
+    let between_rad = scenario.striking.heading_rad - scenario.struck.heading_rad;
+    let towards = to_left_of_struck * between_rad.cos().signum();
+    (towards * driver.acting().steering_wheel_rad < 0.0).then(|| {
+        let side = if towards > 0.0 { "left" } else { "right" };
+        let text = Phrase::new(
+            "the driver of the striking vehicle turns away from the other car, which is to his {0}; \
+             pit_side or the sign of pit_steering_wheel in [bullet_ending] of the scenario says to which \
+             side he turns",
+            "Der Fahrer des stoßenden Fahrzeugs lenkt von dem anderen Fahrzeug weg, das von ihm aus {0} \
+             ist; zu prüfen ist, nach welcher Seite er lenken soll",
+        )
+        .with(PhraseValue::Term(side.to_owned()));
+        let caveat = Caveat::new(CaveatKind::DoubtfulData, text);
+        Caveat { subject: Some(CaveatSubject::Striking), ..caveat }
+    })
 }
 
 /// That a motion is followed to rest although nobody has said what the driver does: whether the vehicle
@@ -80,8 +107,8 @@ mod tests {
     use super::*;
     use crate::ScenarioChoice;
     use crate::analysis::PulseSetup;
-    use impactlab_core::collision::Scenario;
-    use impactlab_core::vehicle::Ending;
+    use impactlab_core::collision::{ContactLocation, Scenario, Side};
+    use impactlab_core::vehicle::{Ending, PitDriver, TurnSide};
 
     fn asked(scenario: Scenario) -> SimulateRequest {
         let scenario = ScenarioChoice::Inline(Box::new(scenario));
@@ -112,5 +139,31 @@ mod tests {
         assert!(open.is_warning());
         let alone = SimulateRequest { one_contact: true, ..timed };
         assert_eq!(open_drivers(&alone).unwrap(), []);
+    }
+    /// Without a side he turned to the left, also where the struck car was to his right, without a word.
+    #[test]
+    fn a_driver_of_a_pit_who_turns_away_from_the_other_car_is_told_of() {
+        let found = |mirrored: bool, side: TurnSide| {
+            let pit = Some(PitDriver { side, ..PitDriver::default() });
+            let mut scenario = Scenario {
+                striking_ending: Some(Ending { pit, ..Ending::default() }),
+                ..Scenario::example()
+            };
+            if mirrored {
+                scenario.striking.heading_rad *= -1.0;
+                scenario.striking.vy_world_m_s *= -1.0;
+                if let ContactLocation::Side { side, .. } = &mut scenario.contact.location {
+                    *side = Side::Left;
+                }
+            }
+            open_drivers(&asked(scenario)).unwrap()
+        };
+        for (mirrored, towards, away) in
+            [(false, TurnSide::Left, TurnSide::Right), (true, TurnSide::Right, TurnSide::Left)]
+        {
+            assert_eq!(found(mirrored, towards), [], "{mirrored}");
+            let [told]: [Caveat; 1] = found(mirrored, away).try_into().unwrap();
+            assert_eq!(told.kind, CaveatKind::DoubtfulData, "{told:?}");
+        }
     }
 }
