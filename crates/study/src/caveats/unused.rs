@@ -292,6 +292,24 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
     unused
 }
 
+/// A standard deviation of the friction that is stated beside draws that nobody makes.
+pub(crate) fn friction_not_drawn(request: &SimulateRequest) -> Option<Caveat> {
+    let sigma = request.friction_sigma.filter(|sigma| *sigma > 0.0)?;
+    (request.vehicle_draws == Some(0)).then(|| {
+        Caveat::not_used(
+            Phrase::new(
+                "standard deviation of the friction, {0}",
+                "Standardabweichung des Reibbeiwerts, {0}",
+            )
+            .with(PhraseValue::given(Quantity::Ratio, sigma)),
+            Phrase::new(
+                "neither vehicles nor roads are drawn",
+                "weder Fahrzeuge noch Fahrbahnen werden gezogen",
+            ),
+        )
+    })
+}
+
 /// A vehicle that was chosen for recorded pairs, which have their own.
 ///
 /// - `role`: which one it is, as a label.
@@ -353,7 +371,7 @@ pub(crate) fn by_recorded_pair(request: &SimulateRequest) -> Vec<Caveat> {
 
 /// What a forecast does not use of its question, beside that of the simulation.
 pub(crate) fn by_forecast(request: &PredictMotionRequest) -> Vec<Caveat> {
-    let mut unused = Vec::new();
+    let mut unused = Vec::from_iter(friction_not_drawn(&request.motion));
     let is_predicted = matches!(request.force, ForceSource::Predicted(_));
     if !is_predicted && !request.is_of_both() && request.draws != DEFAULT_DRAWS {
         unused.push(Caveat::not_used(

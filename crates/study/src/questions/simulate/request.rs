@@ -14,7 +14,7 @@ use crate::ask::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::caveats::driver::open_drivers;
 use crate::caveats::other_vehicle::other_vehicles;
 use crate::caveats::unused::{
-    by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair, vehicle_of_fixed,
+    self, by_recorded_pair, by_simulation, contact_at_medians, integrator_of_pair, vehicle_of_fixed,
 };
 use crate::caveats::{assumed, bodies, restrictions};
 use crate::questions::predict::impulse_rival::Beside;
@@ -140,8 +140,7 @@ impl SimulateRequest {
         }
     }
 
-    /// A vehicle with the equations of motion and on the road that the question says; both vehicles of a
-    /// collision have the same.
+    /// A vehicle on the road and with the equations of the question, which are those of both vehicles.
     fn as_asked(&self, mut vehicle: VehicleParameters) -> VehicleParameters {
         if let Some(equations) = self.equations {
             vehicle = vehicle.with_equations(equations);
@@ -270,8 +269,11 @@ impl SimulateRequest {
         analyse: &Analyse<'_>,
         caveats: &mut Caveats,
     ) -> Option<VehicleUncertainty> {
+        caveats.extend(unused::friction_not_drawn(self).filter(|_| !self.alone));
         let road = self.road(&settings.struck, self.seed);
-        let n_draws = self.vehicle_draws.unwrap_or(DEFAULT_VEHICLE_DRAWS);
+        // A vehicle without estimates moves once, unless the question says how well the road is known.
+        let is_open = settings.struck.sheet.is_some() || self.friction_sigma.is_some();
+        let n_draws = if is_open { self.vehicle_draws.unwrap_or(DEFAULT_VEHICLE_DRAWS) } else { 0 };
         let draws = (n_draws, self.seed, road);
         let uncertainty = vehicle_uncertainty(draws, settings, analysis, analyse)?;
         caveats.extend(assumed::road(self, &settings.struck));

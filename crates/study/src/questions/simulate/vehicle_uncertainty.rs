@@ -47,8 +47,8 @@ struct DrawnEnd {
     has_met: bool,
 }
 
-/// Simulates the motion with vehicles drawn from what the data sheet leaves open; `None` if it leaves
-/// nothing open, if no draws are asked for, or if nothing is simulated.
+/// Simulates the motion with vehicles drawn from what the data sheet leaves open, on roads that are drawn;
+/// `None` if nothing is open, if no draws are asked for, or if nothing is simulated.
 ///
 /// - `n_draws`, `seed`, `road`: number and seed of the draws, and how the friction of the road is drawn.
 /// - `settings`: with the vehicle at the medians of its estimates;
@@ -59,7 +59,6 @@ pub(crate) fn vehicle_uncertainty(
     central: &Analysis,
     analyse: &(impl Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + ?Sized),
 ) -> Option<VehicleUncertainty> {
-    settings.struck.sheet.as_ref()?;
     central.simulation.as_ref()?;
     let draws = VehicleDraws::new(&settings.struck, true, road, n_draws, seed);
     if draws.is_empty() {
@@ -128,8 +127,9 @@ mod tests {
         SimulateRequest, VehicleChoice,
     };
     use impactlab_core::collision::Scenario;
-    use impactlab_core::uncertainty::{Caveat, CaveatSubject};
+    use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
     use impactlab_core::vehicle::sheet::SheetQuantity;
+    use impactlab_core::vehicle::{Braking, Ending};
 
     fn report(source: MotionSource, vehicle: &str, n_draws: usize) -> Answer<SimulateReport> {
         let request = SimulateRequest {
@@ -177,6 +177,31 @@ mod tests {
         let estimated = [CaveatSubject::VehicleParameter, CaveatSubject::RoadFriction].map(Some);
         let is_estimate = |caveat: &&Caveat| estimated.contains(&caveat.subject);
         assert_eq!(report.caveats.iter().filter(is_estimate).count(), shares.len());
+    }
+
+    /// The standard deviation was read and did nothing where the vehicle has no data sheet.
+    #[test]
+    fn a_stated_uncertainty_of_the_friction_spreads_the_end_of_a_known_vehicle() {
+        let brake = Braking::new(0.0, 2.0, 0.3);
+        let asked = |friction_sigma, vehicle_draws| {
+            let drive = Drive { speed_m_s: Some(20.0), ..Drive::default() };
+            let request = SimulateRequest {
+                ending: Some(Ending { brake: Some(brake), ..Ending::default() }),
+                friction_sigma: Some(friction_sigma),
+                vehicle_draws,
+                ..SimulateRequest::new(MotionSource::Drive(drive))
+            };
+            let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+            request.answer(&Library::default(), &mut go_on).unwrap().complete().unwrap().report
+        };
+        let spread = asked(0.05, Some(40)).report.uncertainty.unwrap();
+        let [low, high] = spread.x_m.ninety();
+        // v²/(2 μ d g) with μ = 0.8 ± 0.05 and d = 0.8, both ends by 1.645 σ.
+        assert!((5.0..9.0).contains(&(high - low)), "{low} {high}");
+        assert_eq!(asked(0.0, Some(40)).report.uncertainty, None);
+        let medians = asked(0.05, Some(0));
+        assert_eq!(medians.report.uncertainty, None);
+        assert!(medians.caveats.iter().any(|it| it.kind == CaveatKind::NotUsed));
     }
 
     #[test]
