@@ -7,7 +7,9 @@ use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, CaveatText};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
-use impactlab_core::vehicle::{ContactPoint, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters};
+use impactlab_core::vehicle::{
+    ContactPoint, FrictionZone, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters,
+};
 
 use crate::SimulateRequest;
 
@@ -70,6 +72,22 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
     .with(PhraseValue::phrase(whose))
     .with(PhraseValue::given(Quantity::Ratio, ROAD_FRICTION_SPREAD).in_unit("%"));
     Some(Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
+}
+
+/// That the friction of zones of the ground counts as known, where that of the road is drawn.
+pub(crate) fn zones(zones: &[FrictionZone]) -> Option<Caveat> {
+    let names: Vec<&str> = zones.iter().map(|zone| zone.name.as_str()).collect();
+    let value = Phrase::new(
+        "that of the zones of the site ({0}) is known exactly",
+        "der Wert der Bereiche des Geländes ({0}) gilt als genau bekannt",
+    )
+    .with(PhraseValue::Name(names.join(", ")));
+    let reason = Phrase::new(
+        "only the friction of the road beside them is drawn: intervals of what moves on them are too narrow",
+        "gezogen wird nur der Reibbeiwert der übrigen Fahrbahn: Intervalle für Bewegungen in diesen \
+         Bereichen sind zu eng",
+    );
+    (!names.is_empty()).then(|| Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
 }
 
 /// A quantity of a data sheet with its interval of 90 %.

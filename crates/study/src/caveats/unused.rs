@@ -436,5 +436,8 @@ mod tests {
         let caveat = zones_by_network(&struck).unwrap();
         assert_eq!(caveat.kind, CaveatKind::NotUsed);
         assert_eq!(caveat.text, "friction zones: ice");
+        // One that knows them takes their friction as exact: that of the road alone is drawn.
+        let exact = crate::caveats::assumed::zones(&struck.friction_zones).unwrap();
+        assert_eq!(exact.text, "that of the zones of the site (ice) is known exactly");
     }
 }

@@ -270,13 +270,13 @@ impl SimulateRequest {
         caveats: &mut Caveats,
     ) -> Option<VehicleUncertainty> {
         caveats.extend(unused::friction_not_drawn(self).filter(|_| !self.alone));
-        let road = self.road(&settings.struck, self.seed);
         // A vehicle without estimates moves once, unless the question says how well the road is known.
         let is_open = settings.struck.sheet.is_some() || self.friction_sigma.is_some();
         let n_draws = if is_open { self.vehicle_draws.unwrap_or(DEFAULT_VEHICLE_DRAWS) } else { 0 };
-        let draws = (n_draws, self.seed, road);
+        let draws = (n_draws, self.seed, self.road(&settings.struck, self.seed));
         let uncertainty = vehicle_uncertainty(draws, settings, analysis, analyse)?;
         caveats.extend(assumed::road(self, &settings.struck));
+        caveats.extend(assumed::zones(&settings.friction_zones));
         Some(uncertainty)
     }
 
