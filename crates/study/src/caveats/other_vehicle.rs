@@ -2,7 +2,7 @@
 
 use impactlab_core::collision::{Role, Scenario, SharedNumber};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
-use impactlab_core::units::{NumberFormat, Phrase, PhraseValue, UnitSystem};
+use impactlab_core::units::{NumberFormat, Phrase, PhraseValue, Quantity, UnitSystem};
 use impactlab_core::vehicle::VehicleParameters;
 
 use crate::VehicleChoice;
@@ -13,8 +13,12 @@ const MASS_TOLERANCE: f64 = 0.03;
 const INERTIA_TOLERANCE: f64 = 0.15;
 const LENGTH_TOLERANCE: f64 = 0.04;
 
+/// Difference of two frictions beyond which they are not those of one road.
+const FRICTION_TOLERANCE: f64 = 0.02;
+
 /// What a scenario says otherwise than the vehicles that were chosen for it by name. The motion is that
-/// of the numbers of the scenario on the tires of the vehicle: it is the motion of neither car.
+/// of the numbers of the scenario on the tires of the vehicle: it is the motion of neither car. Last, that
+/// both vehicles move on roads of their own.
 ///
 /// - `choices`: the struck vehicle and the striking one, as the question names them;
 /// - `vehicles`: the same, before they take over the numbers of the scenario.
@@ -27,7 +31,27 @@ pub(crate) fn other_vehicles(
         let is_named = *choice != VehicleChoice::Automatic || scenario.vehicle_name(role).is_some();
         is_named.then(|| other_than(scenario, role, vehicle)).flatten()
     };
-    Role::ALL.into_iter().zip(choices).zip(vehicles).filter_map(of_role).collect()
+    let named = Role::ALL.into_iter().zip(choices).zip(vehicles).filter_map(of_role);
+    named.chain(two_frictions(scenario, vehicles)).collect()
+}
+
+/// That the files of both vehicles have the friction of different roads, and nobody said that of the road
+/// on which they meet.
+fn two_frictions(scenario: &Scenario, vehicles: [&VehicleParameters; 2]) -> Option<Caveat> {
+    let [struck, striking] = vehicles.map(|vehicle| vehicle.tires.friction);
+    let is_one = (struck - striking).abs() <= FRICTION_TOLERANCE;
+    (!is_one && scenario.striking.fixed.is_none()).then(|| {
+        let text = Phrase::new(
+            "each moves on the friction of its own file, the struck vehicle on {0} and the striking one on \
+             {1}, where one road has one; --friction says it for both",
+            "Jedes Fahrzeug hat den Reibbeiwert aus seiner Datei, das gestoßene {0} und das stoßende {1}; \
+             eine Fahrbahn hat nur einen, der für beide anzugeben ist",
+        )
+        .with(PhraseValue::three_digits(Quantity::Ratio, struck))
+        .with(PhraseValue::three_digits(Quantity::Ratio, striking));
+        let caveat = Caveat::new(CaveatKind::OtherVehicle, text);
+        Caveat { subject: Some(CaveatSubject::Striking), ..caveat }
+    })
 }
 
 fn other_than(scenario: &Scenario, role: Role, vehicle: &VehicleParameters) -> Option<Caveat> {
@@ -94,6 +118,17 @@ mod tests {
     use super::*;
     use impactlab_core::units::{Language, three_digits};
     use impactlab_core::vehicle::built_in_vehicle;
+
+    /// “Friction of the road 0.3” stood over a striking car on 0.8.
+    #[test]
+    fn vehicles_on_different_frictions_are_named() {
+        let vehicle = built_in_vehicle("reference-2000").unwrap();
+        let wet = vehicle.clone().with_friction(0.3);
+        let found = |vehicles| two_frictions(&Scenario::example(), vehicles);
+        assert_eq!(found([&vehicle, &vehicle]), None);
+        let caveat = found([&wet, &vehicle]).unwrap();
+        assert!(caveat.is_warning() && caveat.text.contains("struck vehicle on 0.3"), "{caveat}");
+    }
 
     #[test]
     fn a_car_with_the_mass_of_another_one_is_named_with_both() {
