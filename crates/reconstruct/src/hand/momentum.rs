@@ -178,13 +178,22 @@ fn gain(loss_j: f64) -> (bool, Phrase) {
 }
 
 fn warn_in_line(_: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
+    in_line_warnings(outputs)
+}
+
+fn in_line_warnings(outputs: &[f64]) -> Vec<Phrase> {
     let &[_, _, _, loss_j, restitution] = outputs else { return Vec::new() };
     let phrase = Phrase::new(
         "the speeds imply a restitution of {0}, expected 0 to 1: they do not go together",
         "Aus den Geschwindigkeiten folgt eine Stoßziffer von {0}, erwartet 0 bis 1: sie passen nicht zusammen",
     );
     let phrase = phrase.with(PhraseValue::three_digits(Quantity::Ratio, restitution));
-    violated([gain(loss_j), (!(0.0..=1.0).contains(&restitution), phrase)])
+    let apart = Phrase::new(
+        "both vehicles have one speed before the impact: they do not close in on each other",
+        "Beide Fahrzeuge haben vor dem Stoß dieselbe Geschwindigkeit: sie nähern sich einander nicht",
+    );
+    let told = if restitution.is_finite() { phrase } else { apart };
+    violated([gain(loss_j), (!(0.0..=1.0).contains(&restitution), told)])
 }
 
 fn warn_at_angles(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
@@ -212,6 +221,7 @@ fn warn_at_angles(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
 mod tests {
     use crate::hand::HandMethod::{Momentum, MomentumInLine};
     use crate::hand::calculation::tests::{near, solved};
+    use impactlab_core::units::{NumberFormat, UnitSystem};
 
     /// A car of 1500 kg at 20 m/s and one of 1000 kg at rest that stay together: both leave with 12 m/s.
     #[test]
@@ -301,6 +311,20 @@ mod tests {
                 - 2.0 * before[0] * before[1] * angle.cos();
             let reduced = mass_kg[0] * mass_kg[1] / (mass_kg[0] + mass_kg[1]);
             near(&outputs[4..], &[0.5 * reduced * between]);
+        }
+    }
+
+    /// “A restitution of NaN, expected 0 to 1” was the warning.
+    #[test]
+    fn vehicles_of_one_speed_have_no_restitution() {
+        let told = |restitution| super::in_line_warnings(&[10.0, 0.0, 0.0, 0.0, restitution]);
+        assert!(told(0.5).is_empty());
+        for restitution in [f64::NAN, f64::INFINITY] {
+            let phrases = told(restitution);
+            let texts: Vec<String> =
+                phrases.iter().map(|it| it.say(&NumberFormat::english(UnitSystem::Si))).collect();
+            assert_eq!(texts.len(), 1, "{texts:?}");
+            assert!(texts[0].starts_with("both vehicles have one speed"), "{texts:?}");
         }
     }
 }
