@@ -119,7 +119,7 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time_s,Fx [m],Fy [m]\n0,1,1\n0.1,1,1\n",
-            r#"f.csv:1:2: "Fx [m]" is in "m", expected a unit of force (N, kN, MN, lbf, kip); correct the header or map the column with its unit, e.g. --map fx=2:N"#,
+            r#"f.csv:1:2: "Fx [m]" is in "m", expected a unit of force (N, kN, MN, lbf, kip, daN, kgf); correct the header or map the column with its unit, e.g. --map fx=2:N"#,
         ),
         (
             b"time [fortnight],fx_n,fy_n\n0,1,1\n0.1,1,1\n",
@@ -127,7 +127,7 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"t;fx;fy\ns;kN;kg\n0;1;1\n1;1;1\n",
-            r#"f.csv:1:3: "fy" is in "kg", expected a unit of force (N, kN, MN, lbf, kip); correct the header or map the column with its unit, e.g. --map fy=3:N"#,
+            r#"f.csv:1:3: "fy" is in "kg", expected a unit of force (N, kN, MN, lbf, kip, daN, kgf); correct the header or map the column with its unit, e.g. --map fy=3:N"#,
         ),
         (
             b"time_s,fx_n,fy_n,Fx [kN]\n0,1,1,1\n1,1,1,1\n",

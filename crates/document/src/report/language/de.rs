@@ -335,7 +335,7 @@ pub(super) const WORDS: Words = Words {
         neuronalen Netz. Ganze Bewegungen werden verfolgt, reihum mit den gezogenen Kräften und \
         Fahrzeugen, mindestens 240, wo ein Fahrzeug für sich allein verfolgt wird; was das Netz \
         offenlässt, wird für jede gezogen. Außerhalb des Gelernten tritt das 4DOF-Modell mit seinen gemessenen Fehlern an seine Stelle.",
-    limits_response: "Das mitgelieferte hat aus simulierten Bewegungen von 57 Fahrzeugen von bis zu 12 s gelernt. Die \
+    limits_response: "Das mitgelieferte hat aus simulierten Bewegungen von 72 Fahrzeugen von bis zu 12 s gelernt. Die \
         Auslaufstrecke wurde mit keiner Aufzeichnung verglichen.",
     method_reconstruction: "Rekonstruktion aus Spuren",
     method_reconstruction_text: "Alles Unbekannte (Geschwindigkeiten, Winkel, Kontakt, Reibung, Massen, Bremsung, …) hat \

@@ -325,7 +325,7 @@ pub(super) const WORDS: Words = Words {
         Whole motions are followed with the forces and vehicles that were drawn in turn, at least 240 where one \
         vehicle is followed by itself; what the network leaves uncertain is drawn for each. Outside of what it \
         learned from, the 4DOF model with its measured errors takes its place.",
-    limits_response: "The shipped one learned from simulated motions of 57 cars of up to 12 s. The distance over which \
+    limits_response: "The shipped one learned from simulated motions of 72 cars of up to 12 s. The distance over which \
         a car rolls out has not been compared with a record.",
     method_reconstruction: "Reconstruction from evidence",
     method_reconstruction_text: "Everything that is not known (speeds, heading, contact, friction, masses, braking, …) \
