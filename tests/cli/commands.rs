@@ -102,7 +102,7 @@ fn wrong_usage_exits_with_2() {
         &["nonsense"],
         &["check"],
         &["simulate", "--vehicle", "reference-2000"],
-        &["simulate", "--vehicle", "reference-2000", "--speed", "20kn"],
+        &["simulate", "--vehicle", "reference-2000", "--speed", "20kPa"],
         &["simulate", "--dataset", TRAJECTORIES, "--speed", "20"],
         &["simulate", "--case", "FE_c001"],
         &["check", ".", "--map", "fx"],

@@ -2,6 +2,7 @@
 
 pub(crate) mod assumed;
 pub(crate) mod bodies;
+mod domain;
 pub(crate) mod driver;
 pub(crate) mod few_draws;
 pub(crate) mod other_vehicle;

@@ -1,6 +1,7 @@
 //! What restricts an answer: findings that a report has in a form of its own, as caveats.
 
 use crate::analysis::{RestOutcome, Rival, RivalForce};
+use crate::caveats::domain::{outside_domain_caveat, partly_outside_caveat};
 use crate::caveats::few_draws::{few_draws, independent_draws};
 use crate::questions::predict::implied_contact::{
     LEAST_P_RIGID, MOST_P_ENERGY_GAIN, warning_phrase,
@@ -21,7 +22,7 @@ use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{
     ContactPoint, REST_SPEED_M_S, RoadSlope, USUAL_SLOPE, VehicleParameters,
 };
-use impactlab_networks::response::{OutsideDomain, STEP_S};
+use impactlab_networks::response::STEP_S;
 
 /// Speed against the heading from which a vehicle moves backwards, m/s; slower ones roll back or slip.
 const BACKWARDS_M_S: f64 = 0.5;
@@ -285,21 +286,6 @@ fn duration_caveat(report: &PredictMotionReport) -> Option<Caveat> {
     Some(caveat)
 }
 
-/// A quantity of a motion that lies outside what a response network has learned from.
-fn outside_domain_caveat(outside: &OutsideDomain) -> Caveat {
-    let OutsideDomain { quantity, value, range } = outside;
-    let [low, high] = *range;
-    let text = Phrase::new(
-        "{0} is {1}, the response network has learned from {2} to {3}",
-        "{0} beträgt {1}; das Bewegungsnetz hat an Werten von {2} bis {3} gelernt",
-    )
-    .with(PhraseValue::Heading((*quantity).to_owned()))
-    .with(PhraseValue::of_named(quantity, *value))
-    .with(PhraseValue::of_named(quantity, low))
-    .with(PhraseValue::of_named(quantity, high));
-    Caveat::new(CaveatKind::OutsideDomain, text).with_value(*quantity, *value).with_range(*range)
-}
-
 /// What restricts a predicted force.
 ///
 /// - `predicted`: those of the force network.
@@ -318,7 +304,8 @@ pub(crate) fn predicted_motion_caveats(
     report: &PredictMotionReport,
     predicted: &[Caveat],
 ) -> Vec<Caveat> {
-    let domain = report.outside_domain.iter().map(outside_domain_caveat);
+    let partly = partly_outside_caveat(report.applicability, &report.outside_domain);
+    let domain = report.outside_domain.iter().map(outside_domain_caveat).chain(partly);
     let contact = report.implied_contact.as_ref().and_then(contact_caveat);
     let flags = report.flags.iter().map(|flag| flag.caveat.clone());
     let end = &report.outcome;
@@ -428,6 +415,7 @@ pub(crate) fn learned_case_caveat(kind: CaveatKind) -> Caveat {
 mod tests {
     use super::*;
     use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+    use impactlab_networks::response::OutsideDomain;
     use std::path::Path;
 
     #[test]
