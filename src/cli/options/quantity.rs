@@ -134,7 +134,7 @@ mod tests {
             ("nan", "expected a number"),
             ("inf", "expected a number"),
             ("", "expected a number"),
-            ("20 kn", "\"kn\" is not one of the units m/s"),
+            ("20 kPa", "\"kPa\" is not one of the units m/s"),
             ("1e9", "speed is 1e9 m/s, expected -150 to 150 m/s"),
             ("1e999", "speed is inf m/s, expected"),
             ("200m/s", "expected -150 to 150 m/s"),

@@ -11,7 +11,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
-use crate::response::evaluate::compare::{answers, clusters};
+use crate::response::evaluate::compare::{CaseClusters, answers, clusters};
 use crate::response::evaluate::{ComparedCase, Comparison, ComparisonSettings, MotionModel};
 use crate::response::train::{cars_of, train_parts};
 use crate::response::{
@@ -58,9 +58,12 @@ pub fn compare_on_unseen_cars(
     if is_broken.get() {
         return Ok(None);
     }
-    let ComparedCars { test, rows, .. } = compared;
+    let ComparedCars { test, mut rows, .. } = compared;
     let test: Vec<&ResponseCase> = test.iter().collect();
     let clusters = clusters(&test, settings.seed);
+    for row in &mut rows {
+        row.cluster = clusters.of_case.get(row.cluster).copied().unwrap_or_default();
+    }
     Ok(Some(Comparison::new(&set.name, settings, &test, &clusters, rows, &[])))
 }
 
@@ -157,7 +160,9 @@ impl ComparedCars<'_> {
         let all = TrainingSet::from_split(String::new(), &cases, seed, TEST_SHARE);
         let is_test = |case: &&ResponseCase| all.test.iter().any(|id| id.digest == case.digest);
         let test: Vec<&ResponseCase> = cases.iter().filter(is_test).collect();
-        let clusters = clusters(&test, seed);
+        // Each is a cluster of its own until those of all cars can be clustered.
+        let of_case = (self.test.len()..self.test.len() + test.len()).collect();
+        let clusters = CaseClusters { of_case, clusters: None };
         let mut add = |model: &MotionModel, n: usize, choice: u64| -> Result<(), LearningError> {
             self.rows.extend(answers(model, n, choice, &test, &clusters)?);
             Ok(())
