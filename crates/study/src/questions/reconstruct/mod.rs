@@ -5,5 +5,6 @@ mod badges;
 pub(crate) mod later_contacts;
 mod particle_columns;
 pub(crate) mod paths;
+mod progress;
 pub(crate) mod request;
 mod single_car;

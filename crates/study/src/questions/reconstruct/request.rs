@@ -17,6 +17,7 @@ use crate::questions::reconstruct::badges::{
 };
 use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
 use crate::questions::reconstruct::paths::compared_marks;
+use crate::questions::reconstruct::progress::progress;
 use crate::questions::reconstruct::single_car;
 use crate::{
     Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
@@ -477,26 +478,6 @@ impl Question for ReconstructRequest {
         let report = Answer { report, caveats, provenance: Provenance::from_seed(self.seed) };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
     }
-}
-
-/// How far the sampling is: half of it is reaching the posterior.
-///
-/// - `settings`: those of the sampler, which end it.
-fn progress(
-    report: &SamplerReport<'_>,
-    target: &ReconstructionTarget,
-    settings: &SamplerSettings,
-) -> Progress {
-    let of_posterior = (report.ess.unwrap_or(0.0) / settings.least_ess).min(1.0);
-    let share = 0.5 * report.temperature.powf(0.2) + 0.5 * of_posterior;
-    // Where the sample stays small, the evaluations end it.
-    let spent = report.n_evaluations as f64 / settings.max_evaluations as f64;
-    let through = match target.model().follows_later_contacts() {
-        true => ", through all contacts",
-        false => "",
-    };
-    let message = format!("{} motions{through}", report.n_evaluations);
-    Progress::new((1000.0 * share.max(spent.min(1.0))) as u64, 1000, message)
 }
 
 #[cfg(test)]

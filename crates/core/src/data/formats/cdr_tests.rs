@@ -1,0 +1,39 @@
+//! Tests of the export of a Bosch CDR tool.
+
+use super::*;
+
+const REPORT: &str = "CDR FILE INFORMATION\nUser Entered VIN/Frame Number,X1\n\
+    EDR Device Type,Module 7\nComplete File Recorded,No\n\
+    SYSTEM STATUS AT EVENT (EVENT RECORD 1)\n\
+    \"Maximum Delta-V, Longitudinal (MPH [km/h])\",-14.9 [-24.0]\n\
+    \"PRE-CRASH DATA -5 TO 0 SEC, TABLE 1 OF 1 (EVENT RECORD 1)\"\n\
+    Times (sec),\"Speed, Vehicle Indicated (MPH [km/h])\",Steering Input (deg),Service Brake\n\
+    -5.0,31 [50],0,Off\n-4.5,30 [48],-12,On\n\
+    PRE-CRASH DATA (EVENT RECORD 2)\nEvent record 2 contains no recorded data\n";
+
+#[test]
+fn the_table_before_the_crash_keeps_its_lines() {
+    let path = Path::new("r.csv");
+    let table = as_table(path, REPORT, &ReadSettings::default()).unwrap().unwrap();
+    let lines: Vec<&str> = table.text.lines().collect();
+    assert_eq!(lines[7], "time [sec]\tspeed [MPH]\tsteering wheel [deg]\tService Brake");
+    assert_eq!(lines[8], "-5\t31\t0\tOff");
+    assert_eq!(lines.len(), 10);
+    let said = table.said;
+    assert_eq!(said.device, "Module 7");
+    assert!(said.doubts[0].contains("complete file recorded: No"), "{:?}", said.doubts);
+    assert!(said.doubts[1].contains("no recorded data"), "{:?}", said.doubts);
+    assert!(said.description.contains("device: Module 7"), "{}", said.description);
+    assert!(as_table(path, "t,fx\n0,1\n", &ReadSettings::default()).unwrap().is_none());
+}
+
+#[test]
+fn keys_have_their_numbers() {
+    let report = Report::parse(Path::new("r.csv"), REPORT).unwrap();
+    let (name, value) = report.sections[1].number("maximumdeltavlongitudinal").unwrap();
+    assert_eq!(
+        (column_name(name).as_str(), value),
+        ("Maximum Delta-V, Longitudinal [MPH]", -14.9,)
+    );
+    assert_eq!(report.value("edrdevicetype"), Some("Module 7"));
+}
