@@ -4,9 +4,11 @@
 
 Car i of a seed is always the same one, however many are asked for. Ranges and how they hang together follow the
 data sheets of some thirty cars of 2003 to 2021: a class says what is tall, heavy and long at once. The first
-design has 60 cars (`classes.json`). Those after it have 24 each (`classes-wide.json`), for what the first one
-leaves out: the dynamic index of the cars that were measured (1.1 in the median of Heydinger 1999; the first one
-has 0.85 to 1.10), wheelbases up to 3.8 m, wide tracks, soft front tires.
+design has 60 cars (`classes.json`). The next one has 24 (`classes-wide.json`), for what the first one leaves
+out: the dynamic index of the cars that were measured (1.1 in the median of Heydinger 1999; the first one has 0.85
+to 1.10), wheelbases up to 3.8 m, wide tracks, soft front tires. Those after it have 24 each
+(`classes-edge.json`), for what a data sheet leaves open: front axles that yield as much as 11 deg/g or as little
+as 2.6, light or heavy noses, tires that slide at once or hardly lose grip.
 """
 
 import argparse
@@ -22,13 +24,12 @@ import layouts
 
 FOLDER = Path(__file__).resolve().parent
 # Cars of the first Latin hypercube, and of each of those after it.
-DESIGN_CARS, WIDE_CARS = 60, 24
+DESIGN_CARS, LATER_CARS = 60, 24
 FRONT_DRIVEN, REAR_DRIVEN = 0, 1
 # Largest height of the centre of gravity over the track: a taller car falls over in a curve.
 TALLEST_OVER_TRACK = 0.535
 # The rear axle is stiffer than the front one by so much, so that every car is stable.
 REAR_OVER_FRONT_STIFFNESS = (1.20, 1.50)
-LARGEST_REAR_STIFFNESS = 23.0
 RIDE_FREQUENCY_HZ = (1.05, 1.60)
 # From this mass on the inner joints of the E90 rear tie rods are raised: less roll oversteer.
 HEAVY_KG, TIE_ROD_RAISE_M = 1500.0, 0.006
@@ -40,7 +41,8 @@ class CarClass:
 
     - `n_of_design`: how many cars of a design are of the class.
     - `cornering_stiffness_over_load`: of the front tires, 1/rad.
-    - `least_rear_stiffness_over_load`: of the rear tires, 1/rad.
+    - `least_rear_stiffness_over_load`, `largest_rear_stiffness_over_load`: of the rear tires, 1/rad.
+    - `sliding_over_peak`: friction of the sliding tire over its peak.
     - `bar_over_wheel_rate`: front anti-roll bar over the wheel rate of the springs.
     - `front_driven_share`: share of the cars whose front axle is driven.
     - `pairs`: plausible pairs of axles (front, rear).
@@ -61,13 +63,16 @@ class CarClass:
     front_driven_share: float
     spring_free_travel_m: float
     pairs: tuple
+    largest_rear_stiffness_over_load: float = 23.0
+    sliding_over_peak: tuple = (0.72, 0.95)
 
 
 def _classes(file):
     return {name: CarClass(**ranges) for name, ranges in json.loads((FOLDER / file).read_text()).items()}
 
 
-CLASSES, WIDE_CLASSES = _classes("classes.json"), _classes("classes-wide.json")
+# Classes of the first design, of the second, and of all others.
+CLASSES, WIDE_CLASSES, EDGE_CLASSES = map(_classes, ("classes.json", "classes-wide.json", "classes-edge.json"))
 
 # What a car is made of; a coordinate of the hypercube each.
 COORDINATES = ("mass", "wheelbase", "track", "track_difference", "front_share", "cg_height", "yaw_inertia",
@@ -153,20 +158,22 @@ def sample(n, seed):
 
 
 def car(index, seed):
-    if index < DESIGN_CARS:
-        classes, n_cars, block, row = CLASSES, DESIGN_CARS, 0, index
-    else:
-        classes, n_cars = WIDE_CLASSES, WIDE_CARS
-        block, row = divmod(index - DESIGN_CARS, WIDE_CARS)
+    block, row = 0, index
+    if index >= DESIGN_CARS:
+        block, row = divmod(index - DESIGN_CARS, LATER_CARS)
         block += 1
-    kinds, shares = _design(seed, block, n_cars)
-    return _car(index, kinds[row], classes[kinds[row]], dict(zip(COORDINATES, shares[row])))
+    kinds, shares = _design(seed, block)
+    return _car(index, kinds[row], _classes_of(block)[kinds[row]], dict(zip(COORDINATES, shares[row])))
+
+
+def _classes_of(block):
+    return (CLASSES, WIDE_CLASSES, EDGE_CLASSES)[min(block, 2)]
 
 
 @lru_cache
-def _design(seed, block, n_cars):
+def _design(seed, block):
     """Classes and coordinates of the cars of a design. The cars of a class spread over every range."""
-    classes = WIDE_CLASSES if block else CLASSES
+    classes, n_cars = _classes_of(block), LATER_CARS if block else DESIGN_CARS
     rng = np.random.default_rng([seed, block])
     kinds = [name for name, of in classes.items() for _ in range(of.n_of_design)]
     assert len(kinds) == n_cars, "the classes fill the design"
@@ -192,7 +199,8 @@ def _car(index, kind, of, u):
     front, rear = of.pairs[min(len(of.pairs) - 1, int(len(of.pairs) * u["pair"]))]
     front_stiffness = between(of.cornering_stiffness_over_load, u["stiffness"])
     rear_stiffness = front_stiffness * between(REAR_OVER_FRONT_STIFFNESS, u["stiffness_ratio"])
-    rear_stiffness = clipped(rear_stiffness, (of.least_rear_stiffness_over_load, LARGEST_REAR_STIFFNESS))
+    limits = of.least_rear_stiffness_over_load, of.largest_rear_stiffness_over_load
+    rear_stiffness = clipped(rear_stiffness, limits)
     front_frequency = between((1.05, 1.45), u["front_frequency"])
     rear_frequency = clipped(front_frequency * between((1.04, 1.20), u["rear_frequency"]), RIDE_FREQUENCY_HZ)
     front_bar = between(of.bar_over_wheel_rate, u["front_bar"])
@@ -214,7 +222,7 @@ def _car(index, kind, of, u):
         # A stiff tire reaches its peak at a smaller slip.
         slip_at_peak=(between((2.25, 2.60), u["front_slip"]) / front_stiffness,
                       between((2.70, 3.10), u["rear_slip"]) / rear_stiffness),
-        sliding_over_peak=between((0.72, 0.95), u["sliding"]),
+        sliding_over_peak=between(of.sliding_over_peak, u["sliding"]),
         link_mass_factors=(layouts.link_mass_factor(layouts.FRONTS[front], mass),
                            layouts.link_mass_factor(layouts.REARS[rear], mass)),
         driven_axle=FRONT_DRIVEN if u["driven"] < of.front_driven_share else REAR_DRIVEN,

@@ -54,21 +54,30 @@ class Sample(unittest.TestCase):
     def test_a_car_is_the_same_however_many_are_asked_for(self):
         self.assertEqual(cars.sample(3, SEED)[2], cars.sample(90, SEED)[2])
         self.assertEqual(cars.sample(62, SEED)[61], cars.sample(90, SEED)[61])
-        self.assertNotEqual(asdict(cars.car(62, SEED)), asdict(cars.car(86, SEED)))
+        self.assertNotEqual(asdict(cars.car(86, SEED)), asdict(cars.car(110, SEED)))
 
     def test_cars_are_plausible(self):
-        for car in cars.sample(cars.DESIGN_CARS + 2 * cars.WIDE_CARS, SEED):
+        # Of the first design, of the second and of those after it.
+        ranges = {
+            "mass_kg": ((850, 2800), (850, 2950), (850, 3100)),
+            "front_share": ((0.43, 0.63), (0.43, 0.63), (0.43, 0.66)),
+            "cg_height_m": ((0.44, 0.80), (0.44, 0.80), (0.44, 0.86)),
+            "yaw_inertia_ratio": ((0.85, 1.12), (0.85, 1.28), (0.80, 1.34)),
+            "sliding_over_peak": ((0.72, 0.95), (0.72, 0.95), (0.68, 1.0)),
+        }
+        stiffness = ((10.0, 17.5), (8.4, 17.5), (5.2, 22.0)), ((13.0, 23.0), (11.0, 23.0), (8.4, 31.0))
+        for car in cars.sample(cars.DESIGN_CARS + 3 * cars.LATER_CARS, SEED):
             with self.subTest(car=car.name, kind=car.kind):
-                is_wide = car.index >= cars.DESIGN_CARS
-                self.assertTrue(850 <= car.mass_kg <= (2950 if is_wide else 2800))
-                self.assertTrue(0.43 <= car.front_share <= 0.63)
-                self.assertTrue(0.44 <= car.cg_height_m <= 0.80)
-                self.assertTrue(0.85 <= car.yaw_inertia_ratio <= (1.28 if is_wide else 1.12))
+                design = min((car.index - cars.DESIGN_CARS) // cars.LATER_CARS + 1, 2) if car.index >= cars.DESIGN_CARS else 0
+                for name, of_designs in ranges.items():
+                    least, largest = of_designs[design]
+                    self.assertTrue(least <= getattr(car, name) <= largest, name)
                 self.assertLessEqual(car.cg_height_m, cars.TALLEST_OVER_TRACK * car.track_front_m + 1e-9)
                 front, rear = car.cornering_stiffness_over_load
-                self.assertTrue((8.4 if is_wide else 10.0) <= front <= 17.5)
-                self.assertTrue((11.0 if is_wide else 13.0) <= rear <= 23.0)
-                self.assertTrue(1.15 <= rear / front <= 1.5)
+                for value, of_designs in zip((front, rear), stiffness):
+                    least, largest = of_designs[design]
+                    self.assertTrue(least <= value <= largest)
+                self.assertTrue(1.15 <= rear / front <= (1.65 if design == 2 else 1.5))
                 self.assertTrue(all(1.05 <= frequency <= 1.6 for frequency in car.ride_frequencies_hz))
                 self.assertLess(car.half_width_m * 2, 2.15)
                 self.assertTrue(3.3 < car.length_m < 6.7, car.length_m)
@@ -82,12 +91,18 @@ class Sample(unittest.TestCase):
         self.assertGreaterEqual(len({(car.front, car.rear) for car in sample}), 12)
         self.assertEqual({car.driven_axle for car in sample}, {0, 1})
 
-    def test_later_designs_have_what_the_first_one_leaves_out(self):
-        wide = [cars.car(cars.DESIGN_CARS + i, SEED) for i in range(cars.WIDE_CARS)]
+    def test_later_designs_have_what_those_before_leave_out(self):
+        wide = [cars.car(cars.DESIGN_CARS + i, SEED) for i in range(cars.LATER_CARS)]
         self.assertGreater(max(car.yaw_inertia_ratio for car in wide), 1.22)
         self.assertGreater(max(car.wheelbase_m for car in wide), 3.7)
         self.assertGreater(max(car.track_front_m for car in wide), 1.74)
         self.assertLess(min(car.cornering_stiffness_over_load[0] for car in wide), 9.2)
+        edge = [cars.car(cars.DESIGN_CARS + cars.LATER_CARS + i, SEED) for i in range(cars.LATER_CARS)]
+        front = [car.cornering_stiffness_over_load[0] for car in edge]
+        self.assertTrue(min(front) < 5.8 and max(front) > 20.5, front)
+        self.assertGreater(max(car.front_share for car in edge), 0.64)
+        sliding = [car.sliding_over_peak for car in edge]
+        self.assertTrue(min(sliding) < 0.70 and max(sliding) > 0.97, sliding)
 
     def test_tall_cars_are_no_saloons(self):
         for car in cars.sample(cars.DESIGN_CARS, SEED):
@@ -97,7 +112,7 @@ class Sample(unittest.TestCase):
                 self.assertGreater(car.cg_height_m, 0.64)
 
     def test_pairs_of_axles_are_layouts(self):
-        for of in (*cars.CLASSES.values(), *cars.WIDE_CLASSES.values()):
+        for of in (*cars.CLASSES.values(), *cars.WIDE_CLASSES.values(), *cars.EDGE_CLASSES.values()):
             for front, rear in of.pairs:
                 self.assertIn(front, layouts.FRONTS)
                 self.assertIn(rear, layouts.REARS)
