@@ -174,10 +174,7 @@ impl LaterContacts {
         limit: PathLimit,
     ) -> Option<[FollowedCar; 2]> {
         let mut initial = striking.manoeuvre.initial;
-        let pose = |manoeuvre: &Manoeuvre| {
-            let state = &manoeuvre.initial;
-            Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
-        };
+        let pose = |manoeuvre: &Manoeuvre| Pose::from_state(&manoeuvre.initial);
         // Rounded corners leave a gap where the momentum solution has the cars touch.
         let poses = [&pose(struck.manoeuvre), &pose(striking.manoeuvre)];
         let outlines = [&self.outlines[0], &self.outlines[1]];

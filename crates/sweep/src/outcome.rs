@@ -7,7 +7,6 @@ use std::f64::consts::PI;
 
 use impactlab_core::collision::Pose;
 use impactlab_core::numerics::wrap_angle_rad;
-use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::pair::{Course, HALF_TURN_RAD, QUARTER_TURN_RAD};
 use impactlab_networks::response::STEP_S;
 use impactlab_study::analysis::PairRow;
@@ -237,15 +236,11 @@ fn is_across(row: &PairRow) -> bool {
     // Middle of the struck car from the nose of the striking one, in the axes of that.
     let footprints = row.footprints;
     let middle_m = footprints[0].cg_from_front_m - footprints[0].length_m / 2.0;
-    let middle = pose(struck).world_from_body([middle_m, 0.0]);
-    let [x_m, y_m] = pose(striking).body_from_world(middle);
+    let middle = Pose::from_state(struck).world_from_body([middle_m, 0.0]);
+    let [x_m, y_m] = Pose::from_state(striking).body_from_world(middle);
     let ahead_m = x_m - footprints[1].cg_from_front_m;
     let nearest_m = ACROSS_LENGTHS * footprints[0].length_m;
     (low..=high).contains(&between_rad) && ahead_m > 0.0 && ahead_m.hypot(y_m) <= nearest_m
-}
-
-fn pose(state: &VehicleState<f64>) -> Pose {
-    Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
 }
 
 #[cfg(test)]
@@ -254,6 +249,7 @@ mod tests {
 
     use super::*;
     use impactlab_core::collision::Footprint;
+    use impactlab_core::vehicle::VehicleState;
     use impactlab_networks::pair::PairDraw;
 
     fn state(x_m: f64, y_m: f64, yaw_rad: f64, speed_m_s: f64) -> VehicleState<f64> {

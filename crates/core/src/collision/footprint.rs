@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::polygon::{clip, twice_area_m2};
 use crate::ranges::OFF_OUTLINE;
-use crate::vehicle::{GeometryParameters, VehicleParameters};
+use crate::vehicle::{GeometryParameters, VehicleParameters, VehicleState};
 
 /// Smallest area that an outline and a lane share, m².
 const LEAST_SHARED_M2: f64 = 1e-6;
@@ -117,6 +117,11 @@ pub struct OffOutline {
 }
 
 impl Pose {
+    /// The pose of a vehicle in a state.
+    pub fn from_state(state: &VehicleState<f64>) -> Self {
+        Self { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
+    }
+
     /// Transforms a point from body axes (origin at the CG) to world axes, m.
     pub fn world_from_body(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.yaw_rad.sin_cos();

@@ -191,7 +191,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         let (role, name) = (Role::Striking, "striking vehicle");
         elements.push(path(name, role, &central.iter().collect::<Vec<_>>()));
         if let Some(state) = central.get(at) {
-            let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
+            let pose = Pose::from_state(state);
             let style = LineStyle::Solid;
             elements.extend(vehicle_outline(name, role, style, &footprint, &pose, x.unit));
         }
@@ -199,7 +199,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let central: Vec<_> = input.central.iter().collect();
     elements.push(path("central path", Role::Target, &central));
     if let Some(state) = input.central.get(at) {
-        let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
+        let pose = Pose::from_state(state);
         let (role, style) = (Role::Target, LineStyle::Solid);
         let footprint = &input.footprint;
         elements.extend(vehicle_outline("central path", role, style, footprint, &pose, x.unit));

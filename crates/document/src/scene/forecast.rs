@@ -90,9 +90,7 @@ fn ghosts(
 }
 
 fn poses(states: &[VehicleState<f64>]) -> Vec<Pose> {
-    let pose =
-        |state: &VehicleState<f64>| Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
-    states.iter().map(pose).collect()
+    states.iter().map(Pose::from_state).collect()
 }
 
 /// Adds a density and the edges of its regions.

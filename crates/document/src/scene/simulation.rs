@@ -201,7 +201,7 @@ fn impulse_arrow(analysis: &Analysis, units: UnitSystem) -> Option<SceneArrow> {
     }
     let [shortest, longest] = ARROW_LENGTHS_M;
     let length_m = (ARROW_PER_SPEED_S * size / vehicle.mass.mass_kg).clamp(shortest, longest);
-    let pose = Pose { x_m: initial.x_m, y_m: initial.y_m, yaw_rad: initial.yaw_rad };
+    let pose = Pose::from_state(initial);
     let tip = pose.world_from_body([contact.x_body_m, contact.y_body_m]);
     let back = length_m / size;
     let tail = [tip[0] - impulse[0] * back, tip[1] - impulse[1] * back];

@@ -62,11 +62,7 @@ impl ContactPair {
         striking: &mut StruckVehicle,
         normal_world_rad: f64,
     ) {
-        let pose = |it: &StruckVehicle| Pose {
-            x_m: it.initial.x_m,
-            y_m: it.initial.y_m,
-            yaw_rad: it.initial.yaw_rad,
-        };
+        let pose = |it: &StruckVehicle| Pose::from_state(&it.initial);
         let (poses, outlines) =
             ([&pose(struck), &pose(striking)], [0, 1].map(|i| &self.outlines[i]));
         let way_m = way_to_touch_m(outlines, poses, normal_world_rad, LONGEST_WAY_M);

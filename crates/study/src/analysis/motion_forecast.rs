@@ -279,7 +279,7 @@ pub fn forecast_forces(
     Ok(MotionForecast {
         distribution,
         central,
-        paths: paths.iter().map(|path| path.iter().map(pose).collect()).collect(),
+        paths: paths.iter().map(|path| path.iter().map(Pose::from_state).collect()).collect(),
         forces: forces.to_vec(),
         outcome,
         rest,
@@ -290,10 +290,6 @@ pub fn forecast_forces(
         applicability: usual(applicabilities.iter().collect()),
         both: None,
     })
-}
-
-pub(super) fn pose(state: &VehicleState<f64>) -> Pose {
-    Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
 }
 
 /// What lies outside for the median of several forces and vehicles, with the mean of their values.

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::analysis::contact_pair::{ContactPair, manoeuvres};
 use crate::analysis::contacts::ContactsOutcome;
-use crate::analysis::motion_forecast::{drawn_vehicles, pose, usual};
+use crate::analysis::motion_forecast::{drawn_vehicles, usual};
 use crate::analysis::motion_to_rest::SettledDraws;
 use crate::analysis::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, RestOutcome,
@@ -159,7 +159,11 @@ pub fn forecast_both(
         draws.sensitivities(&ends)
     });
     let paths = |i: usize| -> Vec<Vec<Pose>> {
-        found.draws.iter().map(|draw| draw.states[i].iter().map(pose).collect()).collect()
+        found
+            .draws
+            .iter()
+            .map(|draw| draw.states[i].iter().map(Pose::from_state).collect())
+            .collect()
     };
     let both = BothVehicles {
         striking_paths: paths(1),
