@@ -71,8 +71,8 @@ pub(crate) fn draw_element<'a>(
     let stroke = Stroke::new(theme::line_width(element.role()), color);
     let style = |series: &Series| match series.style {
         LineStyle::Solid => PlotLineStyle::Solid,
-        LineStyle::Dashed => PlotLineStyle::Dashed { length: theme::dashes(series.role).length },
-        LineStyle::Dotted => PlotLineStyle::Dotted { spacing: theme::dashes(series.role).length },
+        LineStyle::Dashed => PlotLineStyle::Dashed { length: series.role.dashes().length },
+        LineStyle::Dotted => PlotLineStyle::Dotted { spacing: series.role.dashes().length },
     };
     let height = |y: f64| if log_y { y.log10() } else { y };
     let points = |series: &Series| {

@@ -111,7 +111,7 @@ fn marker_ui(ui: &mut Ui, element: &FigureElement, color: Color32) {
         }
         LineStyle::Dashed => {
             let stroke = Stroke::new(theme::line_width(element.role()), color);
-            for ends in theme::dashes(element.role()).sample {
+            for ends in element.role().dashes().sample {
                 let x = ends.map(|share| centre.x + share * size);
                 painter.hline(Rangef::new(x[0], x[1]), centre.y, stroke);
             }

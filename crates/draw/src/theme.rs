@@ -1,13 +1,9 @@
 //! Colours and line widths for the light and the dark theme.
-//!
-//! The palette is that of [`OkabeIto2008`](impactlab_core::bibliography::OkabeIto2008), whose colours can be
-//! distinguished with any of the common colour-vision deficiencies. Colours that are too pale for a
-//! white background or too dark for a black one are shifted in lightness.
 
 use egui::{Color32, Visuals};
 
 use impactlab_core::data::Severity;
-use impactlab_document::figure::{Dashes, Role, variant_colors, variant_dashes};
+use impactlab_document::figure::Role;
 
 /// Width of a plotted line, points.
 pub const LINE_WIDTH: f32 = 1.8;
@@ -20,30 +16,8 @@ pub const FILL_OPACITY: f32 = 0.18;
 ///
 /// - `dark`: whether the background is dark.
 pub fn color(role: Role, dark: bool) -> Color32 {
-    let (light_ground, dark_ground) = match role {
-        Role::Simulation | Role::ComponentX | Role::Model => ([0, 114, 178], [86, 180, 233]),
-        Role::Reference => ([60, 60, 60], [215, 215, 215]),
-        Role::Target | Role::LeftWheel => ([0, 128, 96], [0, 190, 140]),
-        Role::Striking | Role::ComponentY | Role::Validation => ([213, 94, 0], [240, 130, 50]),
-        Role::Resultant => ([60, 60, 60], [225, 225, 225]),
-        Role::Pulse => ([170, 80, 140], [220, 145, 190]),
-        Role::RightWheel => ([110, 70, 170], [170, 140, 230]),
-        Role::Variant(idx) => {
-            let [on_light, on_dark] = variant_colors(idx);
-            (on_light, on_dark)
-        }
-        Role::Muted => ([150, 150, 150], [120, 120, 120]),
-    };
-    let [r, g, b] = if dark { dark_ground } else { light_ground };
+    let [r, g, b] = role.rgb(dark);
     Color32::from_rgb(r, g, b)
-}
-
-/// How a dashed line of a role is dashed.
-pub fn dashes(role: Role) -> Dashes {
-    match role {
-        Role::Variant(idx) => variant_dashes(idx),
-        _ => Dashes::default(),
-    }
 }
 
 /// Colour of the time cursor.

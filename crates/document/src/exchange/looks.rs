@@ -1,6 +1,5 @@
 //! Names and colours of what a scene shows, for formats that are drawn by other programs.
 
-use crate::figure::variant_colors;
 use crate::scene::{CarLook, SceneCar, SceneRole};
 
 /// The five values of the colours of the index of AutoCAD.
@@ -21,18 +20,13 @@ pub fn role_name(role: SceneRole) -> String {
     }
 }
 
-/// Colour of a role, 8 bits each for red, green and blue, as in the light theme of the pictures.
+/// Colour of a role, 8 bits each for red, green and blue: that of the pictures on a light ground, and red for
+/// dented outlines, as they are in the index of AutoCAD.
 pub fn role_rgb(role: SceneRole) -> [u8; 3] {
-    match role {
-        SceneRole::Simulated => [0, 114, 178],
-        SceneRole::Forecast => [0, 158, 115],
-        SceneRole::Striking => [213, 94, 0],
-        SceneRole::Evidence => [170, 68, 136],
-        SceneRole::Recorded => [60, 60, 60],
-        SceneRole::Variant(idx) => variant_colors(idx)[0],
-        SceneRole::Muted => [150, 150, 150],
-        SceneRole::TireMark => [40, 40, 40],
-        SceneRole::Crush => [190, 40, 40],
+    match role.in_plots() {
+        Some(role) => role.rgb(false),
+        None if role == SceneRole::Crush => [190, 40, 40],
+        None => [40, 40, 40],
     }
 }
 
@@ -83,7 +77,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::*;
-    use crate::figure::N_VARIANT_COLORS;
+    use crate::figure::{N_VARIANT_COLORS, Role};
 
     #[test]
     fn the_index_of_autocad_has_its_published_colours() {
@@ -96,6 +90,16 @@ mod tests {
             (218, [79.0, 0.0, 79.0]),
         ] {
             assert_eq!(aci_rgb(aci), expected, "{aci}");
+        }
+    }
+
+    /// A forecast and what was found had other colours in a file.
+    #[test]
+    fn a_role_has_the_colour_of_the_pictures() {
+        for (role, in_plots) in
+            [(SceneRole::Forecast, Role::Target), (SceneRole::Evidence, Role::Pulse)]
+        {
+            assert_eq!(role_rgb(role), in_plots.rgb(false), "{role:?}");
         }
     }
 

@@ -10,6 +10,7 @@ mod export;
 mod force;
 mod forecast;
 mod impact;
+mod look;
 mod model;
 mod model_comparison;
 mod motion;
@@ -20,7 +21,6 @@ mod replay;
 mod scene;
 mod statistics;
 mod training;
-mod variant_look;
 
 pub use analysis::{
     analysis_force_figure, analysis_motion_figure, analysis_readout, analysis_scene_figure,
@@ -34,6 +34,7 @@ use force::milliseconds;
 pub use force::{ForceFigure, force_figure};
 pub use forecast::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 pub use impact::impact_figure;
+pub use look::{Dashes, N_VARIANT_COLORS};
 pub use model::{
     Axis, Band, CellMap, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series,
 };
@@ -54,4 +55,3 @@ pub use replay::{ReplayCurve, replay_curve_figure, replay_path_figure};
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};
 pub use training::{LossCurve, balance_figure, loss_figure};
-pub use variant_look::{Dashes, N_VARIANT_COLORS, variant_colors, variant_dashes};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::figure::{Dashes, variant_dashes};
+use crate::figure::{Dashes, Role};
 use crate::scene::{CarMotion, CarShape, CarState, SceneGround};
 use impactlab_core::collision::Pose;
 use impactlab_core::uncertainty::Caveats;
@@ -45,12 +45,23 @@ impl SceneRole {
         matches!(self, Self::Recorded | Self::Variant(_))
     }
 
+    /// What has the same colour and the same dashes in a plot; `None` of what no plot shows.
+    pub fn in_plots(self) -> Option<Role> {
+        match self {
+            Self::Recorded => Some(Role::Reference),
+            Self::Simulated => Some(Role::Simulation),
+            Self::Forecast => Some(Role::Target),
+            Self::Striking => Some(Role::Striking),
+            Self::Evidence => Some(Role::Pulse),
+            Self::Variant(idx) => Some(Role::Variant(idx)),
+            Self::Muted => Some(Role::Muted),
+            Self::TireMark | Self::Crush => None,
+        }
+    }
+
     /// How its lines are dashed where they are, as in a plan.
     pub fn dashes(self) -> Dashes {
-        match self {
-            Self::Variant(idx) => variant_dashes(idx),
-            _ => Dashes::default(),
-        }
+        self.in_plots().map(Role::dashes).unwrap_or_default()
     }
 }
 

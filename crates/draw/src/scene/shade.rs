@@ -3,7 +3,6 @@
 use egui::Color32;
 
 use crate::theme;
-use impactlab_document::figure::Role;
 use impactlab_document::scene::{GroundLineKind, SceneRole, Surface};
 
 /// Direction to the sun, of unit length: from behind and from the right of a car that drives along X.
@@ -21,18 +20,11 @@ pub type Rgb = [u8; 3];
 
 /// Colour of a role, for lines and labels.
 pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
-    let role = match role {
-        SceneRole::TireMark => return mark_color(dark),
-        SceneRole::Crush => return crush_color(dark),
-        SceneRole::Recorded => Role::Reference,
-        SceneRole::Simulated => Role::Simulation,
-        SceneRole::Forecast => Role::Target,
-        SceneRole::Striking => Role::Striking,
-        SceneRole::Evidence => Role::Pulse,
-        SceneRole::Variant(idx) => Role::Variant(idx),
-        SceneRole::Muted => Role::Muted,
-    };
-    theme::color(role, dark)
+    match role.in_plots() {
+        Some(role) => theme::color(role, dark),
+        None if role == SceneRole::Crush => crush_color(dark),
+        None => mark_color(dark),
+    }
 }
 
 /// Colour of rubber on the ground where it is darkest: black on the light ground; chalk on the dark one,
