@@ -17,7 +17,7 @@ use dxf::tables::{Layer, LineType};
 use dxf::{Color, Drawing, LwPolylineVertex, Point};
 
 use crate::exchange::ExchangeError;
-use crate::exchange::looks::{is_draw, role_aci, role_name};
+use crate::exchange::looks::{role_aci, role_name};
 use crate::figure::Dashes;
 use crate::scene::{Scene, SceneCar, SceneMark, SceneRole};
 use impactlab_core::site::SiteOrigin;
@@ -52,7 +52,7 @@ pub fn dxf(scene: &Scene, options: &DxfOptions, out: &mut dyn Write) -> Result<(
         let dashes = path.is_dashed.then(|| path.role.dashes());
         sheet.polyline((path.role, "PATH"), dashes, places, false);
     }
-    for car in scene.cars.iter().filter(|car| !is_draw(car)) {
+    for car in scene.cars.iter().filter(|car| !car.is_draw()) {
         options.outlines_s.iter().for_each(|time_s| sheet.outline(car, *time_s));
     }
     for line in &scene.lines {

@@ -17,11 +17,11 @@ use crate::exchange::gltf_buffer::GltfBuilder;
 use crate::exchange::gltf_frame::GltfFrame;
 use crate::exchange::gltf_lines::{material, mesh, primitive};
 use crate::exchange::looks::{role_name, role_rgb};
-use crate::scene::{CarLook, CarState, Mesh as CarMesh, SceneCar, Surface, triangle_normal};
+use crate::scene::{
+    CarLook, CarState, GHOST_OPACITY, Mesh as CarMesh, SceneCar, Surface, triangle_normal,
+};
 use impactlab_core::vehicle::Wheel;
 
-/// Opacity of a ghost.
-const GHOST_OPACITY: f32 = 0.45;
 /// Every material of a car.
 const SURFACES: [Surface; 10] = [
     Surface::Body,

@@ -20,7 +20,6 @@ use crate::exchange::gltf_buffer::GltfBuilder;
 use crate::exchange::gltf_cars::{Keys, add_car, unique_names};
 use crate::exchange::gltf_frame::GltfFrame;
 use crate::exchange::gltf_lines::add_lines;
-use crate::exchange::looks::is_draw;
 use crate::scene::{Scene, SceneCar};
 
 /// Distance of keys in time, at most, s.
@@ -36,7 +35,7 @@ const MAX_KEYS: f64 = 200_000.0;
 /// [`ExchangeError`]: a scene beyond 4 GiB, and the errors of the library and the operating system.
 pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     let mut builder = GltfBuilder::default();
-    let cars: Vec<&SceneCar> = scene.cars.iter().filter(|car| !is_draw(car)).collect();
+    let cars: Vec<&SceneCar> = scene.cars.iter().filter(|car| !car.is_draw()).collect();
     let frame = GltfFrame::new(scene);
     let mut time_s = key_times_s(scene.end_s, frame.start_s, &cars);
     // Keys that single precision does not tell apart are one.

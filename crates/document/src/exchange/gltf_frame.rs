@@ -6,7 +6,6 @@
 
 use serde_json::json;
 
-use crate::exchange::looks::is_draw;
 use crate::scene::Scene;
 
 /// Coordinates up to this are written as they are, m: single precision keeps 1 mm of them.
@@ -26,7 +25,7 @@ pub struct GltfFrame {
 impl GltfFrame {
     /// The frame of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let cars = scene.cars.iter().filter(|car| !is_draw(car));
+        let cars = scene.cars.iter().filter(|car| !car.is_draw());
         let times = cars.map(|car| car.motion.time_s()).filter(|all| all.len() > 1);
         let firsts = times.filter_map(|all| all.first().copied());
         let [low, high] = scene.extent_m();

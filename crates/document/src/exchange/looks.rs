@@ -1,6 +1,6 @@
 //! Names and colours of what a scene shows, for formats that are drawn by other programs.
 
-use crate::scene::{CarLook, SceneCar, SceneRole};
+use crate::scene::SceneRole;
 
 /// The five values of the colours of the index of AutoCAD.
 const ACI_VALUES: [f64; 5] = [255.0, 189.0, 129.0, 104.0, 79.0];
@@ -65,11 +65,6 @@ fn aci_rgb(aci: u8) -> [f64; 3] {
         let off = (of_channel + sixth) % 6.0;
         high - (high - low) * f64::min(off, 4.0 - off).clamp(0.0, 1.0)
     })
-}
-
-/// Whether a car is one of many draws of a forecast, of which only the paths are of use.
-pub fn is_draw(car: &SceneCar) -> bool {
-    car.look == CarLook::Ghost && car.role == SceneRole::Forecast && car.tag.is_empty()
 }
 
 #[cfg(test)]

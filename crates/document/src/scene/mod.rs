@@ -44,8 +44,8 @@ pub use ground_picture::{GroundPicture, PictureLevel, TILE};
 pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{
-    CarLook, MeasureTextAt, Scene, SceneArrow, SceneCar, SceneCross, SceneCrush, SceneDensity,
-    SceneForce, SceneLine, SceneMark, SceneMeasure, ScenePath, ScenePoint, SceneRole,
+    CarLook, GHOST_OPACITY, MeasureTextAt, Scene, SceneArrow, SceneCar, SceneCross, SceneCrush,
+    SceneDensity, SceneForce, SceneLine, SceneMark, SceneMeasure, ScenePath, ScenePoint, SceneRole,
 };
 pub use reconstruction::{ReconstructionParts, reconstruction_scene};
 pub use simulation::{OtherMotion, SimulationScene, simulation_scene};

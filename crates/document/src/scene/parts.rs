@@ -15,6 +15,9 @@ const LEAST_EXTENT_M: f64 = 12.0;
 /// Half the least length of the sides, m: around a point where nothing moves.
 const LEAST_HALF_M: f64 = 4.0;
 
+/// Opacity of a ghost.
+pub const GHOST_OPACITY: f32 = 0.45;
+
 /// What something in a scene is, which gives its colour. It means the same in every view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SceneRole {
@@ -95,6 +98,11 @@ impl SceneCar {
     /// Where the car is, and how its wheels stand.
     pub fn at(&self, time_s: f64) -> CarState {
         self.motion.at(time_s)
+    }
+
+    /// Whether it is one of many draws of a forecast, of which only the paths are of use to other programs.
+    pub fn is_draw(&self) -> bool {
+        self.look == CarLook::Ghost && self.role == SceneRole::Forecast && self.tag.is_empty()
     }
 }
 

@@ -4,12 +4,11 @@ use crate::scene::ground::Ground;
 use crate::scene::shade::{Rgb, body_color};
 use impactlab_core::collision::Pose;
 use impactlab_core::vehicle::Wheel;
-use impactlab_document::scene::{CarLook, CarState, Mesh, SceneCar, SceneRole};
+use impactlab_document::scene::{CarLook, CarState, GHOST_OPACITY, Mesh, SceneCar};
 
 /// Length of a car in the picture below which it is drawn in fewer triangles, pixels.
 const COARSE_BELOW_PIXELS: f64 = 60.0;
-/// Opacity of a ghost, and of each of many draws of a forecast.
-const GHOST_OPACITY: f32 = 0.45;
+/// Opacity of each of many draws of a forecast.
 const DRAW_OPACITY: f32 = 0.16;
 
 /// A car in a picture at a time.
@@ -69,7 +68,7 @@ impl<'a> SeenCar<'a> {
         let state = car.at(time_s);
         let Pose { x_m, y_m, .. } = state.pose;
         let [.., nearness] = ground.projection.project([x_m, y_m, 0.0])?;
-        let is_draw = is_draw(car);
+        let is_draw = car.is_draw();
         let opacity = match car.look {
             CarLook::Solid => 1.0,
             CarLook::Ghost if is_draw => DRAW_OPACITY,
@@ -108,11 +107,6 @@ impl<'a> SeenCar<'a> {
             PartKind::Wheel => &shape.wheel,
         }
     }
-}
-
-/// Whether a car is one of many draws of a forecast.
-pub fn is_draw(car: &SceneCar) -> bool {
-    car.look == CarLook::Ghost && car.role == SceneRole::Forecast && car.tag.is_empty()
 }
 
 /// Steer angle of a wheel, rad.

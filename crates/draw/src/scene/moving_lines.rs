@@ -2,7 +2,7 @@
 
 use egui::Color32;
 
-use crate::scene::cars::{is_draw, steer_of};
+use crate::scene::cars::steer_of;
 use crate::scene::ground::{Ground, Pen, arrow_lines};
 use crate::scene::lines::Stroke;
 use crate::scene::shade::{LOCKED_COLOR, role_color};
@@ -77,7 +77,7 @@ impl MovingLines {
             }
         }
         for car in &ground.scene.cars {
-            if is_draw(car) {
+            if car.is_draw() {
                 continue;
             }
             let state = car.at(time_s);
