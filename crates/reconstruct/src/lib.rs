@@ -58,7 +58,6 @@ pub use latent::{
 };
 pub use left_out::LeftOut;
 pub use likelihood::{ComparedBy, Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
-pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior};
 pub use prior::{Prior, PriorComponent, PriorSource};
 pub use quantity::{QuantityEstimate, ReconstructedQuantity};

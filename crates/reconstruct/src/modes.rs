@@ -3,14 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::sampler::Particles;
-use impactlab_core::numerics::{ClusterError, Clusters, share_standard_error};
-
-/// Mean silhouette from which clusters count as separate. One normal distribution that is cut into
-/// pieces stays below it.
-const SEPARATE_SILHOUETTE: f64 = 0.7;
-
-/// Largest number of particles that clusters are searched in; the silhouette takes its square.
-const MAX_CLUSTERED: usize = 500;
+use impactlab_core::numerics::share_standard_error;
 
 /// Particles of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,24 +46,6 @@ pub fn modes_by<K: Ord + Clone>(
     modes
 }
 
-/// Number of the cluster of each particle by quantities that the caller chooses; 0 for all where the
-/// clusters are not separate. Clusters of up to 5 % of the particles belong to the nearest.
-///
-/// - `rows`: the quantities of each particle, `[n][n_quantities]`;
-/// - `seed`: seed of the clustering.
-///
-/// # Errors
-/// [`ClusterError`] if there are too few rows, or a value is not finite.
-pub fn cluster_keys(rows: &[Vec<f64>], seed: u64) -> Result<Vec<usize>, ClusterError> {
-    let stride = rows.len().div_ceil(MAX_CLUSTERED).max(1);
-    let some: Vec<Vec<f64>> = rows.iter().step_by(stride).cloned().collect();
-    let clusters = Clusters::fit(&some, seed)?;
-    if clusters.silhouette < SEPARATE_SILHOUETTE {
-        return Ok(vec![0; rows.len()]);
-    }
-    Ok(rows.iter().map(|row| clusters.nearest(row)).collect())
-}
-
 #[cfg(test)]
 mod tests {
     use std::ops::ControlFlow;
@@ -87,10 +62,8 @@ mod tests {
     #[test]
     fn two_modes_have_their_probabilities_and_standard_errors() {
         let particles = posterior(&bimodal());
-        let rows: Vec<Vec<f64>> = particles.z.iter().map(|z| vec![z[0], z[1] - z[2]]).collect();
-        let clusters = cluster_keys(&rows, 0).unwrap();
-        let modes = modes_by(&particles, |idx| clusters[idx]);
-        assert_eq!(modes.len(), 2);
+        let modes = modes_by(&particles, |idx| particles.z[idx][0] > 0.0);
+        assert_eq!((modes.len(), modes[0].key), (2, true));
         assert!((modes[0].probability - 0.8).abs() < 0.04, "{}", modes[0].probability);
         assert!(modes[0].members.iter().all(|idx| particles.z[*idx][0] > 0.0));
         let error = modes[0].standard_error;
@@ -99,10 +72,8 @@ mod tests {
     }
 
     #[test]
-    fn one_narrow_normal_is_one_mode() {
+    fn what_all_particles_have_in_common_has_a_standard_error() {
         let particles = posterior(&LinearGaussian::narrow());
-        let rows: Vec<Vec<f64>> = particles.z.iter().map(|z| z[..2].to_vec()).collect();
-        assert!(cluster_keys(&rows, 0).unwrap().iter().all(|cluster| *cluster == 0));
         let all = modes_by(&particles, |_| "all");
         assert_eq!(all[0].probability, 1.0);
         // Something that happens in none of 1000 independent draws may have a probability of 0.3 %.

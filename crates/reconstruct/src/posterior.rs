@@ -4,11 +4,12 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::modes::modes_by;
 use crate::quantity::{LEVELS, PosteriorPoint};
 use crate::sampler::Particles;
 use crate::{
     EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, QuantityEstimate,
-    ReconstructedQuantity, ReconstructionTarget, modes_by,
+    ReconstructedQuantity, ReconstructionTarget,
 };
 use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};

@@ -198,11 +198,6 @@ impl<'a> PairContact<'a> {
         }
     }
 
-    /// Greatest deflections h of the elements of each vehicle, m.
-    pub fn greatest_deflections_m(&self) -> [Vec<f64>; 2] {
-        [0, 1].map(|i| self.memory[i].iter().map(ElementMemory::deepest_m).collect())
-    }
-
     /// Depth of the dents that stay, (1 − ρ) h, of the elements of each vehicle, m.
     pub fn dents_m(&self) -> [Vec<f64>; 2] {
         [0, 1].map(|i| {
