@@ -13,10 +13,10 @@
 //!   again;
 //! - `likelihood`: how well a motion goes with the evidence;
 //! - [`sampler`]: draws from the posterior;
+//! - `point_optimum`: the most probable point with its curvature, which it is compared with;
 //! - [`hand`]: what one computes by hand: methods that are asked, the baseline, independent checks;
 //! - [`evaluate`]: how well all of these do on staged collisions, of which the truth is known.
 
-pub mod baseline;
 pub mod domain;
 pub mod evaluate;
 pub mod evidence;
@@ -37,6 +37,7 @@ mod later_contact;
 mod left_out;
 mod likelihood;
 mod modes;
+mod point_optimum;
 mod posterior;
 mod prior;
 mod quantity;
@@ -58,6 +59,7 @@ pub use latent::{
 };
 pub use left_out::LeftOut;
 pub use likelihood::{ComparedBy, Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
+pub use point_optimum::{OptimumSettings, PointOptimum};
 pub use posterior::{BudgetItem, LEAST_ESS_FOR_INTERVALS, Mode, Posterior};
 pub use prior::{Prior, PriorComponent, PriorSource};
 pub use quantity::{QuantityEstimate, ReconstructedQuantity};

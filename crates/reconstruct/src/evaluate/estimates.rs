@@ -3,10 +3,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::baseline::PointOptimum;
 use crate::evidence::Measured;
 use crate::{
-    HandCalculation, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
+    HandCalculation, PointOptimum, Posterior, QuantityEstimate, ReconstructedQuantity,
+    ReconstructionTarget,
 };
 use impactlab_core::numerics::{quantile_of_sorted, unwrapped_rad};
 use impactlab_core::uncertainty::{NormalMixture, NormalPart, sample_crps};

@@ -2,9 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use rand::RngExt;
+
 use super::test_targets::{Function, LinearGaussian, bimodal, discontinuous, normal};
 use super::*;
-use impactlab_core::numerics::normal_cdf;
+use impactlab_core::numerics::{normal_cdf, random_stream};
 
 fn run(target: &(impl Target + ?Sized), settings: SamplerSettings) -> Particles {
     sample(target, &settings, None, &mut |_| ControlFlow::Continue(())).unwrap()
@@ -32,7 +34,7 @@ fn a_mode_in_a_corner_of_a_curved_posterior_is_not_lost() {
     let target = Function { dim: 16, log_likelihood };
     let share = |z: &[f64]| f64::from(u8::from(z[1] >= 0.7));
     let n = 400_000;
-    let mut rng = impactlab_core::numerics::random_stream(1, "reference", 0);
+    let mut rng = random_stream(1, "reference", 0);
     let prior: Vec<Vec<f64>> = (0..n).map(|_| standard_normals(16, &mut rng)).collect();
     let weights: Vec<f64> = target.log_likelihoods(&prior).iter().map(|l| l.exp()).collect();
     let sum: f64 = weights.iter().sum();
@@ -51,6 +53,59 @@ fn a_mode_in_a_corner_of_a_curved_posterior_is_not_lost() {
         let log_evidence = (sum / prior.len() as f64).ln();
         assert!((particles.log_evidence - log_evidence).abs() < 0.3, "{}", particles.log_evidence);
     }
+}
+
+/// Draws of a posterior by rejection, of 200 000 from the prior: `z ~ N(0, I)`, kept with the probability
+/// `L(z) / L_max`. With the estimate of the log evidence, `ln L_max + ln (kept / drawn)`.
+///
+/// - `log_bound`: `ln L_max`, which no log likelihood exceeds.
+fn rejected(target: &impl Target, log_bound: f64) -> (Vec<Vec<f64>>, f64) {
+    let (n_batches, n) = (200_u32, 1000_u32);
+    let mut rng = random_stream(1, "rejection", 0);
+    let mut kept = Vec::new();
+    for _ in 0..n_batches {
+        let z: Vec<Vec<f64>> = (0..n).map(|_| standard_normals(target.dim(), &mut rng)).collect();
+        for (value, z) in target.log_likelihoods(&z).into_iter().zip(z) {
+            assert!(value <= log_bound, "a log likelihood of {value} is above {log_bound}");
+            if rng.random::<f64>().ln() < value - log_bound {
+                kept.push(z);
+            }
+        }
+    }
+    let share = kept.len() as f64 / f64::from(n_batches * n);
+    (kept, log_bound + share.ln())
+}
+
+/// A speed from the distance of a slide with unknown friction, with a share of the courses that have
+/// braked: curved, with two modes, in three dimensions.
+#[test]
+fn a_tiny_question_has_the_draws_of_rejection() {
+    type Value<'a> = &'a dyn Fn(&[f64]) -> f64;
+    let log_likelihood = |z: &[f64]| {
+        let (speed, friction) = (20.0 + 4.0 * z[0], 0.7 * (0.2 * z[1]).exp());
+        let braked = if z[2] > 0.8 { 1.0 } else { 0.4 };
+        normal(speed * speed / (2.0 * 9.81 * friction * braked) / 60.0, 1.0, 0.1)
+    };
+    let target = Function { dim: 3, log_likelihood };
+    let (reference, log_evidence) = rejected(&target, normal(1.0, 1.0, 0.1));
+    let found = run(&target, seed(2));
+    let moments = |z: &[Vec<f64>], value: Value<'_>| {
+        let mean = z.iter().map(|z| value(z)).sum::<f64>() / z.len() as f64;
+        let square = z.iter().map(|z| (value(z) - mean).powi(2)).sum::<f64>();
+        (mean, (square / z.len() as f64).sqrt())
+    };
+    let values: [Value<'_>; 4] =
+        [&|z| z[0], &|z| z[1], &|z| z[0] * z[1], &|z| f64::from(u8::from(z[2] > 0.8))];
+    let n = found.ess.min(found.z.len() as f64);
+    for (idx, value) in values.iter().enumerate() {
+        let (expected, std) = moments(&reference, value);
+        let (mean, found_std) = moments(&found.z, value);
+        let error = 5.0 * std * (1.0 / n + 1.0 / reference.len() as f64).sqrt();
+        assert!((mean - expected).abs() < error, "{idx}: {mean} for {expected} ± {error}");
+        assert!((found_std / std - 1.0).abs() < 0.2, "{idx}: {found_std} for {std}");
+    }
+    let difference = found.log_evidence - log_evidence;
+    assert!(difference.abs() < 0.15, "log evidence differs by {difference}");
 }
 
 /// Means, variances and evidence of measurements down to 0.004 of the prior's width, within five

@@ -16,10 +16,9 @@ use impactlab_core::data::{
 use impactlab_core::error_chain;
 use impactlab_core::numerics::sha256_hex;
 use impactlab_core::program;
-use impactlab_reconstruct::HandCalculation;
-use impactlab_reconstruct::baseline::{OptimumSettings, PointOptimum};
 use impactlab_reconstruct::evaluate::{KnownEvidence, MethodEstimates};
 use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::{HandCalculation, OptimumSettings, PointOptimum};
 
 /// Draws from the normal distribution about the optimum of the swarm.
 const SWARM_DRAWS: usize = 2000;
