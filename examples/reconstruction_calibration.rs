@@ -27,8 +27,8 @@ use impactlab_core::vehicle::FrictionZone;
 use impactlab_reconstruct::evidence::{Edr, Evidence, Measured, RestPose, VideoPosition};
 use impactlab_reconstruct::sampler::{SamplerSettings, sample};
 use impactlab_reconstruct::{
-    Cars, Discrepancy, ForwardModel, Posterior, RankedQuantity, Ranks, ReconstructedQuantity,
-    ReconstructionTarget,
+    Cars, Discrepancy, ForwardModel, Posterior, RankedQuantity, ReconstructedQuantity,
+    ReconstructionTarget, ranks_of_cases,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -140,13 +140,7 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let zones = site.map_or_else(Vec::new, |site| site.friction_zones);
     let all: Result<Vec<_>, _> =
         (0..n).into_par_iter().map(|idx| ranked((&case, &zones), size, idx)).collect();
-    let mut ranks = vec![Ranks::default(); QUANTITIES.len()];
-    for quantities in all? {
-        for (ranks, of) in ranks.iter_mut().zip(quantities) {
-            ranks.add(&of.values, of.truth, of.u);
-        }
-    }
-    for (quantity, ranks) in QUANTITIES.iter().zip(&ranks) {
+    for (quantity, ranks) in QUANTITIES.iter().zip(&ranks_of_cases(&all?)) {
         let p = ranks.p_value(10).ok_or("no collision")?;
         println!("{:<24} p = {p:.3}  {:?}", quantity.key(), ranks.counts(10));
     }

@@ -25,7 +25,7 @@ impl Ranks {
     /// - `values`: the quantity for each particle, all of the same weight;
     /// - `truth`: its true value;
     /// - `u`: uniform random number, 0 to 1.
-    pub fn add(&mut self, values: &[f64], truth: f64, u: f64) {
+    fn add(&mut self, values: &[f64], truth: f64, u: f64) {
         let chosen =
             (0..RANKED).filter_map(|k| values.get((2 * k + 1) * values.len() / (2 * RANKED)));
         let (mut below, mut equal) = (0, 0);
@@ -34,11 +34,6 @@ impl Ranks {
             equal += usize::from(*value == truth);
         }
         self.0.push(below + ((equal + 1) as f64 * u) as usize);
-    }
-
-    /// Number of cases.
-    pub fn n_cases(&self) -> usize {
-        self.0.len()
     }
 
     /// How many ranks fall into each of some bins.
@@ -64,28 +59,15 @@ impl Ranks {
     }
 }
 
-/// Ranks of several quantities, each of one case after the other.
-///
-/// - `cases`: number of cases;
-/// - `n_quantities`: number of quantities;
-/// - `case`: draws truth and data of the case of an index, samples its posterior, and returns the
-///   true values of the quantities, their values for each particle, `[n_quantities][n_particles]`,
-///   and a uniform random number for each quantity.
-///
-/// # Errors
-/// That of `case`.
-pub fn ranks_of_cases<E>(
-    cases: usize,
-    n_quantities: usize,
-    mut case: impl FnMut(usize) -> Result<Vec<RankedQuantity>, E>,
-) -> Result<Vec<Ranks>, E> {
-    let mut ranks = vec![Ranks::default(); n_quantities];
-    for idx in 0..cases {
-        for (ranks, quantity) in ranks.iter_mut().zip(case(idx)?) {
+/// Ranks of several quantities over all cases, each of which has the same ones.
+pub fn ranks_of_cases(cases: &[Vec<RankedQuantity>]) -> Vec<Ranks> {
+    let mut ranks = vec![Ranks::default(); cases.first().map_or(0, Vec::len)];
+    for case in cases {
+        for (ranks, quantity) in ranks.iter_mut().zip(case) {
             ranks.add(&quantity.values, quantity.truth, quantity.u);
         }
     }
-    Ok(ranks)
+    ranks
 }
 
 /// A quantity of one simulated case.
@@ -142,18 +124,19 @@ mod tests {
                 max_evaluations: 4000,
             };
             let target = Function { dim: 3, log_likelihood };
-            let particles = sample(&target, &settings, None, &mut |_| ControlFlow::Continue(()))?;
+            let particles =
+                sample(&target, &settings, None, &mut |_| ControlFlow::Continue(())).unwrap();
             let mut ranked = |quantity: &dyn Fn(&[f64]) -> f64| {
                 RankedQuantity::new(&particles, &truth, rng.random(), quantity)
             };
-            Ok::<_, crate::sampler::SamplerError>(vec![
+            vec![
                 ranked(&|z| z[0]),
                 ranked(&|z| z[0] + z[1]),
                 ranked(&|z| z[1] * z[2]),
                 ranked(&|z| f64::from(u8::from(z[0] > 0.3))),
-            ])
+            ]
         };
-        ranks_of_cases(200, 4, case).unwrap()
+        ranks_of_cases(&(0..200).map(case).collect::<Vec<_>>())
     }
 
     #[test]
@@ -179,7 +162,7 @@ mod tests {
         ranks.add(&values, 30.0, 0.5);
         ranks.add(&[5.0; 19], 5.0, 0.999);
         assert_eq!(ranks, Ranks(vec![0, 19, 19]));
-        assert_eq!((ranks.n_cases(), ranks.p_value(3)), (3, None));
+        assert_eq!(ranks.p_value(3), None);
         // Two bins of one and two: χ² = 1/3 with one degree of freedom.
         assert!((ranks.p_value(2).unwrap() - 0.563_702_9).abs() < 1e-6);
     }
