@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::evidence::{Choice, Field, Fields, Group, Item, PointsMut, Section, Sigma, Word};
 use crate::likelihood::{
-    Comparison, Nearest, Onset, PathResidual, SINGLE_DEGREES_OF_FREEDOM, student,
+    Comparison, NEVER_M, Nearest, Onset, PathResidual, SINGLE_DEGREES_OF_FREEDOM, student,
 };
 
 /// Share of what one end of a mark says that it says by itself: the wheels of a braked car lock
@@ -20,9 +20,6 @@ const WRONG_KIND: f64 = 0.05;
 
 /// Range of the share of a mark on which the wheel is locked over which its kind is open.
 const KIND_SCATTER: f64 = 0.12;
-
-/// Stands for the distance to where a wheel slides that never does, m.
-const NEVER_M: f64 = 30.0;
 
 /// A mark of the struck car in a file, a form and a report.
 pub const STRUCK: Section = Section {

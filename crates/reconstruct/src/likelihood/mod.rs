@@ -16,5 +16,5 @@ pub use target::ReconstructionTarget;
 
 pub(crate) use comparison::{Compared, ComparedCar, Comparison, SINGLE_DEGREES_OF_FREEDOM};
 pub(crate) use discrepancy::{PathResidual, student};
-pub(crate) use onset::Onset;
+pub(crate) use onset::{NEVER_M, Onset};
 pub(crate) use track::{Nearest, Track};

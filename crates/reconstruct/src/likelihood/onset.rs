@@ -9,7 +9,7 @@ use impactlab_core::vehicle::{
 };
 
 /// Stands for the distance to where a wheel slides that never does, m.
-const NEVER_M: f64 = 30.0;
+pub(crate) const NEVER_M: f64 = 30.0;
 
 /// Where one wheel leaves a mark along its path.
 #[derive(Debug, Clone)]
