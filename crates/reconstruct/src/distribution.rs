@@ -5,6 +5,9 @@ use serde::Serialize;
 
 use impactlab_core::numerics::{normal_cdf, normal_quantile};
 
+/// Standard normal variable below which 95 % lie.
+const Z_95: f64 = 1.645;
+
 /// Prior distribution of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "form", rename_all = "snake_case")]
@@ -58,6 +61,11 @@ impl Distribution {
                 cut([median.ln(), sigma], [low.ln(), high.ln()], share).exp().clamp(low, high)
             }
         }
+    }
+
+    /// Central interval of 90 %.
+    pub fn ninety(&self) -> [f64; 2] {
+        [-Z_95, Z_95].map(|z| self.at(z))
     }
 
     /// The ends of the values that it can take.

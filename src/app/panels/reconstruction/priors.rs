@@ -12,8 +12,6 @@ use impactlab_reconstruct::PriorComponent;
 use impactlab_reconstruct::evidence::{Item, PriorRanges};
 use impactlab_study::ReconstructRequest;
 
-/// Standard normal variable below which 95 % lie.
-const Z_95: f64 = 1.645;
 /// Largest width of a bar and its height, points.
 const BAR: [f32; 2] = [110.0, 14.0];
 /// Room for the text beside a bar, points.
@@ -62,7 +60,7 @@ fn prior_row(
     units: UnitSystem,
 ) {
     let unit = latent.quantity().display_unit(units);
-    let before = [-Z_95, Z_95].map(|z| distribution.at(z));
+    let before = distribution.ninety();
     let text = |ends: [f64; 2]| {
         let [low, high] = ends.map(|end| significant(unit.from_si(end)));
         format!("{low} … {high} {}", unit.symbol)

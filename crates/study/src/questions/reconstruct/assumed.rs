@@ -10,9 +10,6 @@ use impactlab_reconstruct::{
     PUSH_PROBABILITY, Prior, PriorComponent, PriorSource, STRIKING_BRAKES, STRIKING_BRAKES_BEFORE,
 };
 
-/// Standard normal variable below which 95 % lie.
-const Z_95: f64 = 1.645;
-
 /// Quantities of the prior that are assumed together.
 pub(super) struct Group {
     pub subject: CaveatSubject,
@@ -382,8 +379,8 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase 
         )
         .with(percent(share_below(PUSH_PROBABILITY))),
         Latent::ZoneFrictionFactor => {
-            let [low, high] = [-Z_95, Z_95]
-                .map(|z| PhraseValue::significant(Quantity::Ratio, distribution.at(z)));
+            let [low, high] =
+                distribution.ninety().map(|end| PhraseValue::significant(Quantity::Ratio, end));
             Phrase::new(
                 "zones of the site, all with {0} to {1} times the friction that it says",
                 "Bereiche des Geländes, alle mit dem {0}- bis {1}-Fachen des angegebenen Reibbeiwerts",
@@ -394,7 +391,7 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase 
         _ => {
             let quantity = latent.quantity();
             let [low, high] =
-                [-Z_95, Z_95].map(|z| PhraseValue::three_digits(quantity, distribution.at(z)));
+                distribution.ninety().map(|end| PhraseValue::three_digits(quantity, end));
             let (range, [low, high]) = match quantity {
                 Quantity::Angle => {
                     let range = Phrase::new("{0}, 90 %: {1} to {2}°", "{0}, 90 %: {1}° bis {2}°");
