@@ -13,9 +13,6 @@ use impactlab_study::{
     Question, StudyError, check_window,
 };
 
-/// Number of time steps between two points of the bands over time, which makes 50 ms.
-const BAND_STRIDE: usize = 5;
-
 /// A question for a predicted motion, whose answer is prepared for drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionQuestion {
@@ -69,7 +66,7 @@ impl Question for MotionQuestion {
     ) -> Result<Outcome<MotionAnswer>, StudyError> {
         let answered = self.request.solve(library, observer)?;
         Ok(answered.map(|answer| {
-            let bands = MotionBands::new(&answer.forecast.distribution, BAND_STRIDE);
+            let bands = MotionBands::for_figure(&answer.forecast.distribution);
             let impulse_n_s = impulse_n_s(&answer);
             MotionAnswer { answer, bands, impulse_n_s }
         }))

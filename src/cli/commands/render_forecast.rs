@@ -18,9 +18,6 @@ use impactlab_networks::shipped::ModelSource;
 use impactlab_study::analysis::{DensityTask, MotionBands};
 use impactlab_study::{ForceSource, PredictMotionRequest};
 
-/// Every how many steps the bands over time have an edge.
-const BAND_STRIDE: usize = 5;
-
 /// What is drawn of which forecast.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ForecastArgs {
@@ -81,8 +78,7 @@ pub(super) fn figure(
         });
     }
     let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
-    let (density, bands) =
-        (density.on_cpu(), MotionBands::new(&forecast.distribution, BAND_STRIDE));
+    let (density, bands) = (density.on_cpu(), MotionBands::for_figure(&forecast.distribution));
     let caveats = &answer.report.caveats;
     let input = MotionForecastFigure {
         density: Some(&density),

@@ -21,7 +21,15 @@ pub struct MotionBands {
     pub intervals: Vec<MotionBand>,
 }
 
+/// Steps between two instants of the bands of a figure, which makes 50 ms.
+const FIGURE_STRIDE: usize = 5;
+
 impl MotionBands {
+    /// Intervals as a figure shows them.
+    pub fn for_figure(motion: &MotionDistribution) -> Self {
+        Self::new(motion, FIGURE_STRIDE)
+    }
+
     /// Intervals of every `stride`-th instant and of the last one.
     pub fn new(motion: &MotionDistribution, stride: usize) -> Self {
         let last = motion.n_instants().saturating_sub(1);

@@ -19,9 +19,6 @@ use impactlab_core::data::Channel;
 use impactlab_study::analysis::{DensityTask, MotionBands};
 use impactlab_study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest};
 
-/// Every how many steps the bands over time have an edge.
-const BAND_STRIDE: usize = 5;
-
 /// What a predicted motion contributes.
 pub(super) fn part(
     request: &PredictMotionRequest,
@@ -124,7 +121,7 @@ fn pictures(
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);
     let at_s = report.outcome.time_s;
     let density = Arc::new(DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu());
-    let bands = MotionBands::new(&forecast.distribution, BAND_STRIDE);
+    let bands = MotionBands::for_figure(&forecast.distribution);
     let caveats = &report.caveats;
     let still = forecast_still(request, answer, &density, caveats, context);
     let input = MotionForecastFigure::new(answer, &bands, caveats, at_s, wording.units)
