@@ -18,9 +18,6 @@ use impactlab_document::scene::{
 use impactlab_draw::scene::{CameraKey, SceneView};
 use impactlab_study::{PredictMotionAnswer, SimulateAnswer};
 
-/// Draws of the forecast that are shown as ghosts.
-const N_GHOSTS: usize = 30;
-
 /// The scene that is shown, and its picture.
 #[derive(Default)]
 pub struct SceneSession {
@@ -78,7 +75,7 @@ impl ShownForecast {
                 analysis,
                 forecast,
                 density: self.density.as_ref().map(|density| &density.map),
-                n_ghosts: N_GHOSTS,
+                n_ghosts: ForecastScene::N_GHOSTS,
                 until_s: report.known_until_s(),
             },
         );

@@ -26,6 +26,11 @@ pub struct ForecastScene<'a> {
     pub n_ghosts: usize,
 }
 
+impl ForecastScene<'_> {
+    /// How many draws are shown as ghosts unless somebody chooses.
+    pub const N_GHOSTS: usize = 30;
+}
+
 /// Adds a forecast to the scene of its simulation.
 pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
     let shape = struck_shape(input.analysis);

@@ -19,9 +19,6 @@ use impactlab_study::{
     PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, ReconstructedPaths,
 };
 
-/// Paths that are drawn from a forecast, as ghosts.
-const N_GHOSTS: usize = 30;
-
 /// Distance of the camera from the struck car at the end of the contact, m: both cars fill the picture.
 const NEAR_M: f64 = 16.0;
 
@@ -71,7 +68,7 @@ pub(super) fn forecast_still(
             analysis,
             forecast: &answer.forecast,
             density: Some(density),
-            n_ghosts: N_GHOSTS,
+            n_ghosts: ForecastScene::N_GHOSTS,
             until_s: report.known_until_s(),
         },
     );
