@@ -13,7 +13,7 @@ use impactlab_core::ranges::{OutOfRange, PICTURE_PIXELS, PICTURE_SIDE};
 use impactlab_document::figure::Figure;
 
 /// Number of passes after which fonts, plot bounds and layout no longer change.
-const SETTLING_PASSES: usize = 4;
+pub(crate) const SETTLING_PASSES: usize = 4;
 
 /// Size, scale and theme of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,6 +47,19 @@ impl Canvas {
     pub(crate) fn size_points(&self) -> Vec2 {
         let [width, height] = self.size_px;
         Vec2::new(width as f32, height as f32) / self.scale
+    }
+
+    /// What a pass over a user interface of this size begins with.
+    pub(crate) fn input(&self, pass: usize) -> RawInput {
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size_points())),
+            time: Some(pass as f64),
+            ..RawInput::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
+            viewport.native_pixels_per_point = Some(self.scale);
+        }
+        input
     }
 
     /// Checks the size, before anything is allocated for it.
@@ -109,18 +122,9 @@ fn settled(
     canvas.check()?;
     let context = Context::default();
     context.set_visuals(theme::visuals(canvas.dark));
-    let size = canvas.size_points();
     let mut last = FullOutput::default();
     for pass in 0..SETTLING_PASSES {
-        let mut input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
-            time: Some(pass as f64),
-            ..RawInput::default()
-        };
-        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
-            viewport.native_pixels_per_point = Some(canvas.scale);
-        }
-        last = context.run_ui(input, &mut ui);
+        last = context.run_ui(canvas.input(pass), &mut ui);
         each(&mut last);
     }
     Ok((context, last))

@@ -1,17 +1,15 @@
 //! The frames of a film: pictures of a scene, one after the other.
 
-use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, UiBuilder, Vec2};
+use egui::{Color32, ColorImage, Context, Pos2, Rect, TexturesDelta, UiBuilder, Vec2};
 
 use crate::film::strip::Strip;
+use crate::offscreen::SETTLING_PASSES;
 use crate::scene::{
     Camera, CameraKey, ScenePicture, SceneView, camera_in_scene, for_all_courses, name_ui,
     scene_picture_ui, side_by_side,
 };
 use crate::{Canvas, SoftwareRenderer, theme};
 use impactlab_core::ranges::OutOfRange;
-
-/// Passes after which fonts and layout of the first frame no longer change.
-const SETTLING_PASSES: usize = 4;
 
 /// Draws pictures of scenes off screen, each below its title and above its legend and what restricts it.
 /// What does not change from one picture to the next is kept: fonts, layout, and the ground of the scene.
@@ -81,16 +79,8 @@ impl FrameRenderer {
     ) -> egui::FullOutput {
         let Self { canvas, context, renderer, views, keys, n_passes, .. } = self;
         views.resize_with(picture.drawn().len(), SceneView::in_frame);
-        let size = Vec2::from(canvas.size_px.map(|side| side as f32)) / canvas.scale;
-        let mut input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
-            time: Some(*n_passes as f64),
-            ..RawInput::default()
-        };
-        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
-            viewport.native_pixels_per_point = Some(canvas.scale);
-        }
-        let mut output = context.run_ui(input, |ui| {
+        let size = canvas.size_points();
+        let mut output = context.run_ui(canvas.input(*n_passes), |ui| {
             let strip = Strip::new(ui, picture, size);
             let rect = strip.scene_rect();
             let rects = side_by_side(rect, views.len());
