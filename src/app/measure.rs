@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use impactlab_core::numerics::{line_length, polygon_area};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::scene::{MeasureTextAt, Scene, SceneMeasure};
 
@@ -79,9 +80,9 @@ impl Measurement {
         }
         let points = &self.points_m;
         match self.measure {
-            Measure::Length | Measure::Scale => Some(length_m(points)),
+            Measure::Length | Measure::Scale => Some(line_length(points)),
             Measure::Angle => angle_rad(points),
-            Measure::Area => Some(area_m2(points)),
+            Measure::Area => Some(polygon_area(points)),
         }
     }
 
@@ -110,7 +111,7 @@ impl Measurement {
                 format!(
                     "{} (last part {})",
                     length(value),
-                    length(length_m(&self.points_m[last..]))
+                    length(line_length(&self.points_m[last..]))
                 )
             }
             Measure::Length | Measure::Scale => length(value),
@@ -126,10 +127,6 @@ impl Measurement {
     }
 }
 
-fn length_m(points_m: &[[f64; 2]]) -> f64 {
-    points_m.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum()
-}
-
 /// Angle at the second of three points; `None` if it coincides with another.
 fn angle_rad(points_m: &[[f64; 2]]) -> Option<f64> {
     let &[a, vertex, b] = points_m else { return None };
@@ -137,16 +134,6 @@ fn angle_rad(points_m: &[[f64; 2]]) -> Option<f64> {
     let ([ax, ay], [bx, by]) = (way(a), way(b));
     let (cross, dot) = (ax * by - ay * bx, ax * bx + ay * by);
     (ax.hypot(ay) > 0.0 && bx.hypot(by) > 0.0).then(|| cross.abs().atan2(dot))
-}
-
-/// Area within a border. Its first corner is subtracted, so that large coordinates lose no digits.
-fn area_m2(points_m: &[[f64; 2]]) -> f64 {
-    let Some([x0, y0]) = points_m.first() else { return 0.0 };
-    let twice = points_m.windows(2).map(|pair| {
-        let ([ax, ay], [bx, by]) = (pair[0], pair[1]);
-        (ax - x0) * (by - y0) - (bx - x0) * (ay - y0)
-    });
-    twice.sum::<f64>().abs() / 2.0
 }
 
 /// The measurements of a scene. They stay where they are on the ground while the camera moves.

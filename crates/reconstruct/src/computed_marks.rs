@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::evidence::{Evidence, Mark};
 use crate::{CollisionMotion, StrikingMotion};
+use impactlab_core::numerics::line_length;
 use impactlab_core::vehicle::{
     ControlledVehicle, Integrator, Manoeuvre, TireMark, VehicleParameters, Wheel, tire_marks,
 };
@@ -84,7 +85,7 @@ impl MarkComparison {
         Self {
             is_of_striking_car: false,
             wheel: found.wheel,
-            found_length_m: length_m(&found.points_m),
+            found_length_m: line_length(&found.points_m),
             computed_length_m: nearest.map_or(0.0, |(length_m, ..)| length_m),
             mean_distance_m: nearest.map(|(_, mean_m, _)| mean_m),
             largest_distance_m: nearest.map(|(.., largest_m)| largest_m),
@@ -92,16 +93,12 @@ impl MarkComparison {
     }
 }
 
-fn length_m(line: &[[f64; 2]]) -> f64 {
-    line.windows(2).map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1])).sum()
-}
-
 /// Places along a line, close to each other and evenly on each of its pieces.
 fn places_along(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut places: Vec<[f64; 2]> = line.first().copied().into_iter().collect();
     for pair in line.windows(2) {
         let [from, to] = [pair[0], pair[1]];
-        let n = (length_m(pair) / STEP_M).ceil().clamp(1.0, 1e4) as usize;
+        let n = (line_length(pair) / STEP_M).ceil().clamp(1.0, 1e4) as usize;
         let at = |i: usize| {
             let share = i as f64 / n as f64;
             [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share]

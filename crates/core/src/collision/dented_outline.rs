@@ -144,10 +144,7 @@ fn closed(outside: Vec<[f64; 2]>, dent: &[[f64; 2]]) -> Vec<[f64; 2]> {
 mod tests {
     use super::*;
     use crate::collision::footprint::examples::{CAR, pose};
-
-    fn area_m2(line: &[[f64; 2]]) -> f64 {
-        line.windows(2).map(|p| p[0][0] * p[1][1] - p[1][0] * p[0][1]).sum::<f64>().abs() / 2.0
-    }
+    use crate::numerics::polygon_area;
 
     #[test]
     fn the_overlap_is_divided_and_nothing_else_changes() {
@@ -162,12 +159,12 @@ mod tests {
             let none = DentedOutlines::new(cars, 0.0).unwrap();
             let all = DentedOutlines::new(cars, 1.0).unwrap();
             let half = DentedOutlines::new(cars, 0.5).unwrap();
-            let overlap_m2 = car_m2 - area_m2(&all.outlines_m[0]);
+            let overlap_m2 = car_m2 - polygon_area(&all.outlines_m[0]);
             assert!(overlap_m2 > 0.01, "{struck:?}: overlap of {overlap_m2} m²");
-            assert!((area_m2(&none.outlines_m[0]) - car_m2).abs() < 1e-2, "{struck:?}");
-            assert!((area_m2(&none.outlines_m[1]) - car_m2 + overlap_m2).abs() < 2e-2);
+            assert!((polygon_area(&none.outlines_m[0]) - car_m2).abs() < 1e-2, "{struck:?}");
+            assert!((polygon_area(&none.outlines_m[1]) - car_m2 + overlap_m2).abs() < 2e-2);
             let lost: Vec<f64> =
-                half.outlines_m.iter().map(|outline| car_m2 - area_m2(outline)).collect();
+                half.outlines_m.iter().map(|outline| car_m2 - polygon_area(outline)).collect();
             assert!((lost[0] + lost[1] - overlap_m2).abs() < 2e-2, "{lost:?} of {overlap_m2} m²");
             assert!(lost.iter().all(|lost| *lost > 0.0), "{lost:?}");
             for outline in &half.outlines_m {

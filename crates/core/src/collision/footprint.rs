@@ -3,12 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::collision::polygon::{clip, twice_area_m2};
+use crate::collision::polygon::clip;
+use crate::numerics::polygon_area;
 use crate::ranges::OFF_OUTLINE;
 use crate::vehicle::{GeometryParameters, VehicleParameters, VehicleState};
 
 /// Smallest area that an outline and a lane share, m².
-const LEAST_SHARED_M2: f64 = 1e-6;
+const LEAST_SHARED_M2: f64 = 5e-7;
 
 /// Share of the width by which another side may be farther from a contact point than the nearest one and be
 /// touched as well, as at a corner.
@@ -232,7 +233,7 @@ impl Footprint {
     /// - `border_m`: corners `[X, Y]` of the area in world axes, in either sense.
     pub fn lies_over(&self, pose: &Pose, border_m: &[[f64; 2]]) -> bool {
         // What is clipped from an area around the outline has sides along it, but no area.
-        twice_area_m2(&clip(border_m, &self.corners_m(pose))).abs() > LEAST_SHARED_M2
+        polygon_area(&clip(border_m, &self.corners_m(pose))) > LEAST_SHARED_M2
     }
 
     /// Whether a part of a line lies below the outline.

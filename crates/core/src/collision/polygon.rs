@@ -43,15 +43,6 @@ pub(super) fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
     polygon
 }
 
-/// Twice the area of a polygon, m²; negative with clockwise corners.
-pub(super) fn twice_area_m2(polygon: &[[f64; 2]]) -> f64 {
-    let Some(&[x0, y0]) = polygon.first() else { return 0.0 };
-    let cross = |pair: &[[f64; 2]]| {
-        (pair[0][0] - x0) * (pair[1][1] - y0) - (pair[1][0] - x0) * (pair[0][1] - y0)
-    };
-    polygon.windows(2).map(cross).sum()
-}
-
 /// Centroid of a polygon with counter-clockwise corners; `None` if it has no area.
 pub(super) fn centroid(polygon: &[[f64; 2]]) -> Option<[f64; 2]> {
     let origin = *polygon.first()?;

@@ -1,6 +1,6 @@
 //! Mathematics without any knowledge of vehicles: the scalar types of the equations of motion
 //! ([`Lanes`], [`Scalar`], [`Packed`]), steps of integration, interpolation, smoothing of measured
-//! motions, statistics, least squares, Gaussian processes, clusters and angles.
+//! motions, statistics, least squares, Gaussian processes, clusters, angles, lines and polygons.
 
 mod angle;
 mod clustering;
@@ -13,6 +13,7 @@ mod least_squares;
 mod normal;
 mod ode;
 mod packed;
+mod plane;
 mod scalar;
 mod seed;
 mod smoother;
@@ -30,6 +31,7 @@ pub use least_squares::{LeastSquares, LeastSquaresProblem, levenberg_marquardt};
 pub use normal::{NORMAL_QUANTILE_95, normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
 pub use packed::{MAX_LANES, Packed};
+pub use plane::{line_length, polygon_area};
 pub use scalar::{Lanes, LanesOver, Scalar};
 pub use seed::{random_stream, sha256_hex};
 pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::numerics::polygon_area;
 use crate::ranges::{OutOfRange, POSITION, ROAD_FRICTION};
 
 /// Most corners of a border: more than any outline in a plan of a scene has.
@@ -107,7 +108,7 @@ impl FrictionZone {
         if let Some([first, second]) = crossing(&corners) {
             return Err(FrictionZoneError::Crossing { zone: zone(), first, second });
         }
-        if area_m2(&self.border_m) < LEAST_AREA_M2 {
+        if polygon_area(&self.border_m) < LEAST_AREA_M2 {
             return Err(FrictionZoneError::NoArea { zone: zone() });
         }
         Ok(())
@@ -159,16 +160,6 @@ fn for_each_side(polygon: &[[f64; 2]], mut visit: impl FnMut([f64; 2], [f64; 2])
         visit(before, corner);
         before = corner;
     }
-}
-
-/// Area of a polygon whose sides do not cross, m².
-fn area_m2(polygon: &[[f64; 2]]) -> f64 {
-    let [x0, y0] = polygon.first().copied().unwrap_or_default();
-    let mut twice = 0.0;
-    for_each_side(polygon, |[ax, ay], [bx, by]| {
-        twice += (ax - x0) * (by - y0) - (bx - x0) * (ay - y0);
-    });
-    twice.abs() / 2.0
 }
 
 /// The numbers of the corners at which two sides begin that cross; `None` if no sides do.

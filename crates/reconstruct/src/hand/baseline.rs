@@ -20,6 +20,7 @@ use crate::Cars;
 use crate::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence, Measured};
 use crate::hand::slide::{SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use impactlab_core::collision::Side;
+use impactlab_core::numerics::line_length;
 use impactlab_core::vehicle::{FrictionZone, friction_at};
 
 /// Sliding over peak friction.
@@ -96,10 +97,7 @@ fn drag_share(evidence: &Evidence, distance_m: f64, friction: f64) -> (f64, f64)
     if evidence.marks.is_empty() {
         return (SPIN_DRAG, SPIN_DRAG_SIGMA);
     }
-    let length = |points: &[[f64; 2]]| -> f64 {
-        points.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()
-    };
-    let marks: f64 = evidence.marks.iter().map(|mark| length(&mark.points_m)).sum();
+    let marks: f64 = evidence.marks.iter().map(|mark| line_length(&mark.points_m)).sum();
     let share = (marks / 4.0 / distance_m).min(1.0);
     (SLIDING_RATIO * share + ROLLING_DRAG / friction * (1.0 - share), 0.12)
 }

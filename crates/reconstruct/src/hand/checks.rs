@@ -27,7 +27,7 @@ use crate::hand::momentum::{LEAST_ANGLE_RAD, speed_in_line, speeds_at_angles};
 use crate::hand::slide::{LEAST_SPIN_RAD, SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use crate::single_car::StartPlace;
 use impactlab_core::collision::Side;
-use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::numerics::{line_length, wrap_angle_rad};
 use impactlab_core::vehicle::{FrictionZone, Wheel};
 
 /// Relative scatter of the friction of the road as the drag factor of a car.
@@ -231,9 +231,7 @@ fn is_free(after: &After) -> bool {
 
 /// Whether each wheel has left marks as a locked wheel does over nearly the whole way.
 fn has_four_locked_marks(marks: &[Mark], way_m: f64) -> bool {
-    let length_m = |mark: &Mark| -> f64 {
-        mark.points_m.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1])).sum()
-    };
+    let length_m = |mark: &Mark| line_length(&mark.points_m);
     let is_locked = |wheel: &Wheel| {
         let locked = marks.iter().filter(|m| m.wheel == *wheel && m.kind == Some(MarkKind::Locked));
         locked.map(length_m).sum::<f64>() > MARKED_SHARE * way_m
