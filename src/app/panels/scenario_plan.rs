@@ -5,6 +5,7 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::widgets::figure_frame;
 use impactlab_core::collision::{ContactLocation, Pose, Scenario, ScenarioVehicle, Side};
+use impactlab_core::numerics::nearest_multiple;
 use impactlab_core::ranges::{HEADING, POSITION, SPEED};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::{
@@ -112,13 +113,13 @@ impl Drag {
             }
             Handle::Position => move_striking(before, moved, &mut scenario.contact.location),
             Handle::Heading => {
-                let heading = rounded(dy.atan2(dx), 0.1_f64.to_radians());
+                let heading = nearest_multiple(dy.atan2(dx), 0.1_f64.to_radians());
                 if HEADING.contains(heading) {
                     vehicle.heading_rad = heading;
                 }
             }
             Handle::Velocity => {
-                let velocity = [dx, dy].map(|value| rounded(value / ARROW_S, 0.01));
+                let velocity = [dx, dy].map(|value| nearest_multiple(value / ARROW_S, 0.01));
                 if SPEED.contains(velocity[0].hypot(velocity[1])) {
                     [vehicle.vx_world_m_s, vehicle.vy_world_m_s] = velocity;
                 }
@@ -143,7 +144,7 @@ fn move_striking(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLo
                 Side::Left | Side::Right => before.struck.length_m / 2.0,
                 Side::Front | Side::Rear => before.struck.width_m / 2.0,
             };
-            *offset_m = rounded((start + along).clamp(-half, half), 1e-3);
+            *offset_m = nearest_multiple((start + along).clamp(-half, half), 1e-3);
         }
         (
             ContactLocation::Footprints { striking_x_world_m: x, striking_y_world_m: y }
@@ -154,16 +155,11 @@ fn move_striking(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLo
             let place = [x + dx, y + dy];
             if place.iter().all(|value| POSITION.contains(*value)) {
                 [*striking_x_world_m, *striking_y_world_m] =
-                    place.map(|value| rounded(value, 1e-3));
+                    place.map(|value| nearest_multiple(value, 1e-3));
             }
         }
         _ => {}
     }
-}
-
-/// The nearest multiple of a step, so that a dragged number is one that a person would write.
-fn rounded(value: f64, step: f64) -> f64 {
-    (value / step).round() * step
 }
 
 /// Poses of the struck and the striking vehicle. The striking vehicle has none where it is placed

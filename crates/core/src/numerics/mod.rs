@@ -14,6 +14,7 @@ mod normal;
 mod ode;
 mod packed;
 mod plane;
+mod rounding;
 mod scalar;
 mod seed;
 mod smoother;
@@ -32,6 +33,7 @@ pub use normal::{NORMAL_QUANTILE_95, normal_cdf, normal_density, normal_quantile
 pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
 pub use packed::{MAX_LANES, Packed};
 pub use plane::{line_length, polygon_area};
+pub use rounding::nearest_multiple;
 pub use scalar::{Lanes, LanesOver, Scalar};
 pub use seed::{random_stream, sha256_hex};
 pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::data::GeographicPlace;
+use crate::numerics::nearest_multiple;
 use crate::site::drawing::USUAL_SIDE_M;
 use crate::site::projection_file::unit_of_world_file;
 use crate::site::{
@@ -322,7 +323,7 @@ impl Site {
         let is_surveyed = !self.lines.is_empty() || !self.points.is_empty();
         let survey_m = self.origin.filter(|_| is_surveyed)?.survey_m;
         let unit = Quantity::Length.display_unit(units);
-        let [easting, northing] = survey_m.map(|value| rounded(unit.from_si(value)));
+        let [easting, northing] = survey_m.map(|value| nearest_multiple(unit.from_si(value), 1e-3));
         let symbol = unit.symbol;
         Some(format!("origin at easting {easting} {symbol}, northing {northing} {symbol}"))
     }
@@ -350,11 +351,6 @@ pub(super) fn extent_text(extent_m: [[f64; 2]; 2], units: UnitSystem) -> String 
     let [[x_low, y_low], [x_high, y_high]] = extent_m.map(|at| at.map(|value| unit.from_si(value)));
     let symbol = unit.symbol;
     format!(", X {x_low:.1} to {x_high:.1} {symbol}, Y {y_low:.1} to {y_high:.1} {symbol}")
-}
-
-/// A coordinate of a survey, to a millimetre or better.
-fn rounded(value: f64) -> f64 {
-    (value * 1e3).round() / 1e3
 }
 
 /// The name of a file without its folder.

@@ -22,7 +22,7 @@ use crate::evidence::{
 use impactlab_core::collision::{Pose, Side};
 use impactlab_core::compare::PairCase;
 use impactlab_core::data::{Channel, SeriesError};
-use impactlab_core::numerics::{interpolate, random_stream, wrap_angle_rad};
+use impactlab_core::numerics::{interpolate, nearest_multiple, random_stream, wrap_angle_rad};
 use impactlab_core::ranges::ROAD_FRICTION;
 use impactlab_core::vehicle::{TireMark, TireMarkKind, VehicleParameters};
 
@@ -147,15 +147,15 @@ impl<R: Rng> Errors<R> {
 
     fn road(&mut self, friction: f64) -> Road {
         let value = self.normal(friction, FRICTION_SIGMA);
-        let value = rounded(value, 0.001).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high);
+        let value = nearest_multiple(value, 0.001).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high);
         Road { value: Some(value), sigma: Some(FRICTION_SIGMA), ..Road::default() }
     }
 
     fn car(&mut self, vehicle: &VehicleParameters) -> CarEvidence {
         let (geometry, true_kg) = (&vehicle.geometry, vehicle.mass.mass_kg);
-        let value = rounded(self.normal(true_kg, MASS_SHARE * true_kg), 1.0);
-        let mass = Measured { value, sigma: rounded(MASS_SHARE * value, 1.0) };
-        let length = |value: f64| Some(rounded(value, 0.001));
+        let value = nearest_multiple(self.normal(true_kg, MASS_SHARE * true_kg), 1.0);
+        let mass = Measured { value, sigma: nearest_multiple(MASS_SHARE * value, 1.0) };
+        let length = |value: f64| Some(nearest_multiple(value, 0.001));
         CarEvidence {
             mass_kg: Some(mass.into()),
             cg_to_front_axle_m: length(geometry.cg_to_front_axle_m),
@@ -179,16 +179,17 @@ impl<R: Rng> Errors<R> {
             Side::Front => (y_m, geometry.cg_to_front_end_m),
             Side::Rear => (y_m, geometry.cg_to_front_end_m - geometry.outer_length_m),
         };
-        let value = rounded(self.normal(along_m, DAMAGE_SIGMA_M), 0.001);
+        let value = nearest_multiple(self.normal(along_m, DAMAGE_SIGMA_M), 0.001);
         let along = Measured { value, sigma: DAMAGE_SIGMA_M };
-        let depth_m = Some(rounded(depth_m, 0.001));
+        let depth_m = Some(nearest_multiple(depth_m, 0.001));
         Damage { side: Some(side), along_m: Some(along.into()), depth_m, angle_rad: None }
     }
 
     fn rest(&mut self, [x_m, y_m, yaw_rad]: [f64; 3]) -> RestPose {
-        let [x_m, y_m] = [x_m, y_m].map(|value| rounded(self.normal(value, REST_SIGMA_M), 0.01));
+        let [x_m, y_m] =
+            [x_m, y_m].map(|value| nearest_multiple(self.normal(value, REST_SIGMA_M), 0.01));
         let value = wrap_angle_rad(self.normal(yaw_rad, HEADING_SIGMA_RAD));
-        let heading = Measured { value: rounded(value, 0.001), sigma: HEADING_SIGMA_RAD };
+        let heading = Measured { value: nearest_multiple(value, 0.001), sigma: HEADING_SIGMA_RAD };
         RestPose {
             x_m: Some(x_m),
             y_m: Some(y_m),
@@ -204,7 +205,7 @@ impl<R: Rng> Errors<R> {
         };
         let points_m = points_along(mark)
             .into_iter()
-            .map(|at_m| at_m.map(|value| rounded(self.normal(value, MARK_SIGMA_M), 0.01)))
+            .map(|at_m| at_m.map(|value| nearest_multiple(self.normal(value, MARK_SIGMA_M), 0.01)))
             .collect();
         Mark { wheel: mark.wheel, kind: Some(kind), points_m, sigma_m: Some(MARK_SIGMA_M) }
     }
@@ -218,15 +219,17 @@ impl<R: Rng> Errors<R> {
         if says_speed {
             let ([x, y], _) = car.before();
             let speed_m_s = x.hypot(y);
-            let value = rounded(self.normal(speed_m_s, SPEED_SHARE * speed_m_s).max(0.0), 0.01);
-            let speed = Measured { value, sigma: rounded((SPEED_SHARE * value).max(0.01), 0.01) };
+            let value =
+                nearest_multiple(self.normal(speed_m_s, SPEED_SHARE * speed_m_s).max(0.0), 0.01);
+            let speed =
+                Measured { value, sigma: nearest_multiple((SPEED_SHARE * value).max(0.01), 0.01) };
             return Some(Edr { speed_before_m_s: Some(speed.into()), ..Edr::default() });
         }
         let [error, half] = DELTA_V_SHARES;
         let [x, y] = car.recorded_delta_v_m_s(RECORD_END_S)?.map(|delta_v_m_s| {
             let value = delta_v_m_s * self.0.random_range(1.0 - error..=1.0 + error);
-            let low = rounded(value - half * value.abs(), 0.001);
-            Some([Some(low), Some(rounded(value + half * value.abs(), 0.001))])
+            let low = nearest_multiple(value - half * value.abs(), 0.001);
+            Some([Some(low), Some(nearest_multiple(value + half * value.abs(), 0.001))])
         });
         let ends_s = Some(RECORD_END_S);
         Some(Edr { delta_v_x_m_s: x, delta_v_y_m_s: y, ends_s, ..Edr::default() })
@@ -295,13 +298,6 @@ fn truth(case: &PairCase, cars: &[RecordedCar<'_>; 2]) -> String {
     road.insert("mu".to_owned(), Value::from(cars[0].vehicle.tires.friction));
     file.insert("road".to_owned(), Value::from(road));
     file.to_string()
-}
-
-/// The nearest multiple of a step.
-fn rounded(value: f64, step: f64) -> f64 {
-    // Divided by a whole number, so that the result is the nearest to that of the decimals.
-    let per_unit = step.recip().round();
-    (value * per_unit).round() / per_unit
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use egui::{Id, TextStyle, Ui};
 
 use crate::app::reconstruction::MarkKey;
 use impactlab_core::collision::Footprint;
+use impactlab_core::numerics::nearest_multiple;
 use impactlab_core::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
 use impactlab_core::units::Unit;
 use impactlab_document::figure::{FigureElement, Role, STRIKING_AT_REST, struck_at_rest};
@@ -172,12 +173,12 @@ impl Drag {
                 let [x_m, y_m] = place_of(before, self.is_struck);
                 let place = [x_m + to[0] - from[0], y_m + to[1] - from[1]];
                 if place.iter().all(|value| EVIDENCE_POSITION.contains(*value)) {
-                    [rest.x_m, rest.y_m] = place.map(|value| Some(rounded(value, 0.01)));
+                    [rest.x_m, rest.y_m] = place.map(|value| Some(nearest_multiple(value, 0.01)));
                 }
             }
             Handle::Heading => {
                 let [x_m, y_m] = place_of(rest, self.is_struck);
-                let heading = rounded((to[1] - y_m).atan2(to[0] - x_m), 0.001);
+                let heading = nearest_multiple((to[1] - y_m).atan2(to[0] - x_m), 0.001);
                 if let Some(stated) = &mut rest.heading_rad
                     && EVIDENCE_HEADING.contains(heading)
                 {
@@ -218,7 +219,7 @@ impl Items for AddPoint {
 
 impl Fields for AddPoint {
     fn points(&mut self, _: &Field, _: &Sigma, points: PointsMut<'_>) {
-        points.points_m.push(self.at_m.map(|value| rounded(value, 0.01)));
+        points.points_m.push(self.at_m.map(|value| nearest_multiple(value, 0.01)));
     }
 
     fn number(&mut self, _: &Field, _: &mut Option<f64>) {}
@@ -230,13 +231,6 @@ impl Fields for AddPoint {
     fn optional_choice<W: Word>(&mut self, _: &Choice, _: &mut Option<W>) {}
 
     fn choices<W: Word>(&mut self, _: &Choice, _: &mut Option<Vec<W>>) {}
-}
-
-/// The nearest multiple of a step, so that a dragged number is one that a person would write.
-fn rounded(value: f64, step: f64) -> f64 {
-    // Divided by a whole number, so that the result is the nearest to that of the decimals.
-    let per_unit = step.recip().round();
-    (value * per_unit).round() / per_unit
 }
 
 #[cfg(test)]
