@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::commands::import_ground::{Ground, GroundArgs, import_ground};
 use crate::cli::console::{Console, Verdict, shown_path};
-use crate::cli::options::{OverwriteArg, Words, one_of};
+use crate::cli::options::{OverwriteArg, SIDES, Words, one_of};
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::collision::{ChannelClass, filter_channel};
 use impactlab_core::data::{
@@ -48,10 +48,10 @@ pub(in crate::cli) struct ImportArgs {
     car: RecorderCar,
     /// To which side the lateral Δv of the recorder is positive
     #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
-    lateral: Side,
+    lateral: RecordedSide,
     /// To which side its yaw rate is positive
     #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
-    yaw_rate: Side,
+    yaw_rate: RecordedSide,
     /// Evidence that the record is added to; a new file has the record alone
     #[arg(long, value_name = "EVIDENCE.toml")]
     evidence: Option<PathBuf>,
@@ -88,24 +88,6 @@ enum RecorderCar {
 
 const CARS: Words<RecorderCar> =
     &[("struck", "", RecorderCar::Struck), ("striking", "", RecorderCar::Striking)];
-
-/// A side of a car.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Left,
-    Right,
-}
-
-const SIDES: Words<Side> = &[("right", "", Side::Right), ("left", "", Side::Left)];
-
-impl Side {
-    fn word(self) -> &'static str {
-        match self {
-            Self::Left => "left",
-            Self::Right => "right",
-        }
-    }
-}
 
 /// What was written, and what is to be said of it.
 #[derive(Debug, Serialize)]
@@ -158,10 +140,10 @@ fn print(out: &mut dyn Write, imported: &Imported) -> io::Result<()> {
 /// Evidence and controls of a recorder.
 fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError> {
     let mut record = RecorderRecord::read(&args.file, args.event)?;
-    if args.lateral == Side::Left {
+    if args.lateral == RecordedSide::Left {
         record.turn_lateral();
     }
-    if args.yaw_rate == Side::Left {
+    if args.yaw_rate == RecordedSide::Left {
         record.turn_yaw_rate();
     }
     let mut evidence = match &args.evidence {
@@ -210,15 +192,14 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
         ));
     }
     let sides = record.sides;
-    let side =
-        |stated: Option<RecordedSide>, said: Side| stated.map_or(said.word(), RecordedSide::word);
+    let side = |stated: Option<RecordedSide>, said| stated.unwrap_or(said).word();
     notes.push(format!(
         "time 0 is when the recorder woke up, some milliseconds after the first contact; the sensor is taken to be \
          at the CG until sensor_x_m and sensor_y_m say where it is; lateral Δv is taken as positive to the {}, the \
          yaw rate as positive to the {}, the angle of the steering wheel as positive to the {}",
         side(sides.lateral, args.lateral),
         side(sides.yaw_rate, args.yaw_rate),
-        side(sides.steering, Side::Left)
+        side(sides.steering, RecordedSide::Left)
     ));
     if !record.before.time_s.is_empty() {
         write_controls(&staging.join("controls.csv"), &record.before)?;

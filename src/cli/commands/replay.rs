@@ -7,9 +7,11 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{OverwriteArg, UnitsArg, VehicleArg, Words, count, number, one_of};
+use crate::cli::options::{
+    AXLES, OverwriteArg, SIDES, UnitsArg, VehicleArg, count, number, one_of,
+};
 use crate::cli::text::{PrintedAnswer, print_answer};
-use impactlab_core::data::write_restricted_series_csv;
+use impactlab_core::data::{RecordedSide, write_restricted_series_csv};
 use impactlab_core::ranges::{
     HEADING, POSITION, RECORDED_SPEED_SIGMA, REPLAY_DRAWS, REPLAY_START, ROAD_FRICTION,
     ROAD_FRICTION_SIGMA, STEERING_RATIO, STEERING_RATIO_SIGMA,
@@ -64,10 +66,10 @@ pub(in crate::cli) struct RecordArgs {
     speed_sigma: Option<f64>,
     /// To which side the recorded steering wheel is positive
     #[arg(long, value_parser = one_of(SIDES), default_value = "left")]
-    steering: Side,
+    steering: RecordedSide,
     /// To which side the recorded yaw rate is positive; in controls.csv of `import` it is left
     #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
-    yaw_rate: Side,
+    yaw_rate: RecordedSide,
     /// Peak friction of the road instead of the vehicle's
     #[arg(long, value_parser = number(ROAD_FRICTION))]
     friction: Option<f64>,
@@ -103,8 +105,8 @@ impl RecordArgs {
     pub(in crate::cli) fn request(&self) -> ReplayRequest {
         ReplayRequest {
             event: self.event,
-            yaw_rate_left: self.yaw_rate == Side::Left,
-            steering_right: self.steering == Side::Right,
+            yaw_rate_left: self.yaw_rate == RecordedSide::Left,
+            steering_right: self.steering == RecordedSide::Right,
             vehicle: VehicleArg::choice(&self.vehicle),
             driven_axle: self.driven,
             steering_ratio: self.steering_ratio,
@@ -131,21 +133,6 @@ A table needs a header with units, such as Time [s], Speed [km/h], Steering Whee
 Service Brake and ABS Activity are used if they are there. Time 0 is the crash, before it is negative.
 
 JSON: impactlab schema replay --answer says every key with its unit; and out, what was written";
-
-const AXLES: Words<DrivenAxle> = &[
-    ("front", "", DrivenAxle::Front),
-    ("rear", "", DrivenAxle::Rear),
-    ("all", "", DrivenAxle::All),
-];
-
-/// A side of a car.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Left,
-    Right,
-}
-
-const SIDES: Words<Side> = &[("left", "", Side::Left), ("right", "", Side::Right)];
 
 /// The report, and where the path was written.
 #[derive(Debug, Serialize)]

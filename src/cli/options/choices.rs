@@ -6,9 +6,9 @@ use std::str::FromStr;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 
-use impactlab_core::data::Sampling;
+use impactlab_core::data::{RecordedSide, Sampling};
 use impactlab_core::units::UnitSystem;
-use impactlab_core::vehicle::{Equations, Integrator};
+use impactlab_core::vehicle::{DrivenAxle, Equations, Integrator};
 use impactlab_study::{BadCases, EvaluatedCases, VehicleChoice};
 
 /// The units of the text.
@@ -105,6 +105,17 @@ pub(in crate::cli) const EQUATIONS: Words<Equations> = &[
     ("corrected", "The paper's, mended", Equations::Corrected),
     ("paper", "The paper's, as printed: an ablation that diverges", Equations::Paper),
 ];
+
+/// Which axle the engine turns.
+pub(in crate::cli) const AXLES: Words<DrivenAxle> = &[
+    ("front", "", DrivenAxle::Front),
+    ("rear", "", DrivenAxle::Rear),
+    ("all", "", DrivenAxle::All),
+];
+
+/// To which side what a recorder says is positive.
+pub(in crate::cli) const SIDES: Words<RecordedSide> =
+    &[("left", "", RecordedSide::Left), ("right", "", RecordedSide::Right)];
 
 /// What a force sample stands for.
 pub(in crate::cli) const SAMPLINGS: Words<Sampling> = &[

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use clap::{ArgGroup, Args};
 
-use crate::cli::options::choices::{Words, one_of};
+use crate::cli::options::choices::{AXLES, Words, one_of};
 use crate::cli::options::quantity::{QuantityError, number};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, OutOfRange,
@@ -88,12 +88,6 @@ pub(in crate::cli) struct EndingArgs {
         default_value_t = DEFAULT_BRAKE_RISE_S, requires = "turned")]
     steer_rise: f64,
 }
-
-const AXLES: Words<DrivenAxle> = &[
-    ("front", "", DrivenAxle::Front),
-    ("rear", "", DrivenAxle::Rear),
-    ("all", "", DrivenAxle::All),
-];
 
 const WHEELS: Words<Wheel> = &[
     ("front-left", "", Wheel::FrontLeft),

@@ -13,7 +13,8 @@ mod trust;
 
 pub(super) use camera_key::{CameraKeyArg, camera_key};
 pub(super) use choices::{
-    BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SPLITS, UnitsArg, VehicleArg, Words, one_of,
+    AXLES, BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SIDES, SPLITS, UnitsArg, VehicleArg,
+    Words, one_of,
 };
 pub(super) use ending::EndingArgs;
 pub(super) use evidence::EvidenceArgs;
