@@ -16,12 +16,12 @@ use impactlab_core::data::{
     DataError, Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically,
 };
 use impactlab_core::error_chain;
-use impactlab_study::InputKind;
+use impactlab_study::{CompareReport, InputKind};
 
 /// Whether something would be replaced at a path. A folder is replaced if it holds results.
 fn is_taken(path: &Path) -> bool {
     let is_there = |name: &&str| path.join(name).exists();
-    path.is_file() || [MANIFEST_FILE, "comparison.json"].iter().any(is_there)
+    path.is_file() || [MANIFEST_FILE, CompareReport::FILES[0]].iter().any(is_there)
 }
 
 impl State {

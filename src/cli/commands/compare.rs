@@ -1,6 +1,6 @@
 //! `impactlab compare`: the response network beside tuned and untuned 4DOF model and a plain network.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -8,10 +8,13 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, OverwriteArg, VehicleArg, count};
 use crate::cli::text::print_answer;
+use impactlab_core::data::Existing;
 use impactlab_core::ranges::{CHOICES, TRAJECTORIES};
 use impactlab_core::units::UnitSystem;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
+use impactlab_study::{
+    Answer, CompareReport, CompareRequest, DEFAULT_CHOICES, ModelChoice, Question, Request,
+};
 
 /// Compare response models on trajectories that none has seen
 #[derive(Debug, Args)]
@@ -91,14 +94,27 @@ pub(in crate::cli) fn run(
         bad_cases: args.bad_cases.into(),
         ..unsaid
     };
-    let known = &["comparison.json", "comparison.md"][..];
-    let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
-    let answer = console.ask_into(&request, out, |output, answer| {
-        answer.report.write(output.staging())?;
-        Ok(answer.report.provenance_with_seed())
+    print_comparison(&request, args.out.as_deref(), args.overwrite.into(), console)
+}
+
+/// Asks what a comparison answers, writes it into a folder if there is one, and prints it.
+pub(super) fn print_comparison<Q>(
+    request: &Q,
+    out: Option<&Path>,
+    existing: Existing,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError>
+where
+    Q: Question<Report = Answer<CompareReport>> + Into<Request>,
+{
+    let out = out.map(|folder| (folder, existing, &CompareReport::FILES[..]));
+    let answer = console.ask_into(request, out, |output, answer| {
+        let report = Q::report(answer);
+        report.write(output.staging())?;
+        Ok(report.provenance_with_seed())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
-    let units = UnitSystem::default();
-    console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
+    let (report, units) = (Q::report(&answer), UnitSystem::default());
+    console.print(report, |out| print_answer(out, report, units))?;
     Ok(Verdict::Clean)
 }

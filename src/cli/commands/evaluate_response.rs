@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::CliError;
+use crate::cli::commands::compare::print_comparison;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, VehicleArg, one_of};
-use crate::cli::text::print_answer;
-use impactlab_core::units::UnitSystem;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluateResponseRequest, EvaluatedCases};
 
@@ -61,14 +60,5 @@ pub(in crate::cli) fn run(
         seed: args.seed,
         bad_cases: args.bad_cases.into(),
     };
-    let known = &["comparison.json", "comparison.md"][..];
-    let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
-    let answer = console.ask_into(&request, out, |output, answer| {
-        answer.report.write(output.staging())?;
-        Ok(answer.report.provenance_with_seed())
-    })?;
-    let Some(answer) = answer else { return Ok(Verdict::Clean) };
-    let units = UnitSystem::default();
-    console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
-    Ok(Verdict::Clean)
+    print_comparison(&request, args.out.as_deref(), args.overwrite.into(), console)
 }

@@ -135,14 +135,20 @@ impl CompareRequest {
     }
 }
 
+impl CompareReport {
+    /// Names of its files but for the tables: all numbers, and the text.
+    pub const FILES: [&str; 2] = ["comparison.json", "comparison.md"];
+}
+
 impl Answer<CompareReport> {
-    /// Writes `comparison.json`, `comparison.md` and each table as CSV into a folder, which must exist
-    /// and have no files of these names.
+    /// Writes [`CompareReport::FILES`] and each table as CSV into a folder, which must exist and have no
+    /// files of these names.
     ///
     /// # Errors
     /// [`DataError::Io`] with the file.
     pub fn write(&self, folder: &Path) -> Result<(), DataError> {
-        let file = folder.join("comparison.json");
+        let [json_name, text_name] = CompareReport::FILES;
+        let file = folder.join(json_name);
         let to_error = |source: serde_json::Error| DataError::io(&file, source.into());
         // A line for each number of all paths would be long.
         let json = serde_json::to_vec(&self.comparison).map_err(to_error)?;
@@ -152,7 +158,7 @@ impl Answer<CompareReport> {
         let restrictions = self.caveats.text();
         let tables = all_tables(&self.comparison).into_iter();
         let tables = tables.map(|(_, name, table)| (name, table.to_csv(restrictions.as_deref())));
-        let texts = tables.chain([("comparison.md", markdown)]);
+        let texts = tables.chain([(text_name, markdown)]);
         let files = texts.map(|(name, text)| (folder.join(name), text.into_bytes()));
         std::iter::once((file.clone(), json)).chain(files).try_for_each(|(path, bytes)| {
             write_atomically(&path, Existing::Refuse, |out| out.write_all(&bytes))
