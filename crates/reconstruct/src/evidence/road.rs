@@ -39,7 +39,8 @@ const SIGMA: Sigma = Sigma::fixed(
 );
 
 const DRAG_FACTOR: Field = Field::new("drag_factor", "drag factor, locked wheels", ROAD_FRICTION);
-const DRAG_FACTOR_SIGMA: Sigma = Sigma::fixed(
+/// That of a drag factor, here and of a skid.
+pub(super) const DRAG_FACTOR_SIGMA: Sigma = Sigma::fixed(
     "drag_factor_sigma",
     "±",
     FRICTION_SIGMA,

@@ -1,13 +1,12 @@
 //! A skid of a car that ended at the first contact. Its length is measured by itself, so that it is a part of
 //! the prior; the speed before the skid follows (`skid.rs` of the forward model).
 
-use impactlab_core::ranges::{
-    FRICTION_SIGMA, POSITION_SIGMA, ROAD_FRICTION, ROAD_GRADE, SKID_LENGTH,
-};
+use impactlab_core::ranges::{POSITION_SIGMA, ROAD_FRICTION, ROAD_GRADE, SKID_LENGTH};
 use impactlab_core::vehicle::Wheel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::evidence::road::DRAG_FACTOR_SIGMA;
 use crate::evidence::{Choice, Field, Fields, Group, Item, Measured, Section, Sigma, Stated};
 
 /// The skid of the struck car in a file, a form and a report.
@@ -42,14 +41,6 @@ const LOCKED_WHEELS: Choice = Choice {
 };
 const DRAG_FACTOR: Field = Field::new("drag_factor", "drag factor of the skid", ROAD_FRICTION)
     .with_default("by the friction of the road and the locked wheels");
-const DRAG_FACTOR_SIGMA: Sigma = Sigma::fixed(
-    "drag_factor_sigma",
-    "±",
-    FRICTION_SIGMA,
-    // As for the drag factor of the road.
-    0.05,
-    "skid tests with another car on the same road",
-);
 const GRADE: Field = Field::new("grade", "grade along the skid, uphill", ROAD_GRADE)
     .with_default("that of the road");
 
