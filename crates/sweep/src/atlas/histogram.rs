@@ -31,8 +31,7 @@ impl HistogramKind {
     /// Numbers of bins and their width, from zero upwards, in the unit of the outcome. What lies beyond the
     /// last one is counted in one more.
     fn steps(self) -> &'static [(usize, f64)] {
-        const DEGREE: f64 = std::f64::consts::PI / 180.0;
-        const TURN: &[(usize, f64)] = &[(36, 10.0 * DEGREE), (12, 30.0 * DEGREE)];
+        const TURN: &[(usize, f64)] = &[(36, 10_f64.to_radians()), (12, 30_f64.to_radians())];
         match self {
             Self::Reach => &[(20, 5.0), (10, 10.0), (10, 20.0)],
             Self::Offset => &[(20, 0.5), (20, 1.0), (10, 3.0)],

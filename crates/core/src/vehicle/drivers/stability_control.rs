@@ -95,8 +95,6 @@ pub struct ActingStabilityControl {
 /// Share of the systems that never give up, where nothing is known.
 const NEVER_SHARE: f64 = 1.0 / 3.0;
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
 impl StabilityControl {
     /// Number of standard normal variables that [`StabilityControl::drawn`] takes.
     pub const N_DRAWN: usize = 7;
@@ -109,8 +107,9 @@ impl StabilityControl {
         let [threshold, full_error, slip, rear, dead_time, rise, gives_up] = z;
         // The upper third of the last variable is that of systems which never give up.
         let gives_up_deg = uniform(gives_up, [30.0, 30.0 + 30.0 / (1.0 - NEVER_SHARE)]);
-        let gives_up_rad = if gives_up_deg > 60.0 { 90.0 } else { gives_up_deg } * DEGREE;
-        let threshold_rad_s = uniform(threshold, [4.0, 8.0]) * DEGREE;
+        let gives_up_deg = if gives_up_deg > 60.0 { 90.0 } else { gives_up_deg };
+        let gives_up_rad = gives_up_deg.to_radians();
+        let threshold_rad_s = uniform(threshold, [4.0, 8.0]).to_radians();
         Self {
             threshold_rad_s: self.threshold_rad_s.or(Some(threshold_rad_s)),
             full_error_rad_s: self.full_error_rad_s.or(Some(uniform(full_error, [0.15, 0.35]))),
@@ -155,17 +154,17 @@ impl StabilityControl {
     pub fn acting(&self) -> ActingStabilityControl {
         ActingStabilityControl {
             filter_s: self.filter_s.unwrap_or(0.05),
-            threshold_rad_s: self.threshold_rad_s.unwrap_or(6.0 * DEGREE),
+            threshold_rad_s: self.threshold_rad_s.unwrap_or(6_f64.to_radians()),
             off_share: self.off_share.unwrap_or(1.0 / 3.0),
             least_speed_m_s: self.least_speed_m_s.unwrap_or(20.0 * KILOMETRE_PER_HOUR_M_S),
             acceleration_share: self.acceleration_share.unwrap_or(0.85),
             full_error_rad_s: self.full_error_rad_s.unwrap_or(0.25),
             slip_ratio: self.slip_ratio.unwrap_or(0.125),
-            rear_sideslip_rad: self.rear_sideslip_rad.unwrap_or(10.0 * DEGREE),
+            rear_sideslip_rad: self.rear_sideslip_rad.unwrap_or(10_f64.to_radians()),
             rear_share: self.rear_share.unwrap_or(0.5),
             dead_time_s: self.dead_time_s.unwrap_or(0.15),
             rise_s: self.rise_s.unwrap_or(0.2),
-            gives_up_sideslip_rad: self.gives_up_sideslip_rad.unwrap_or(45.0 * DEGREE),
+            gives_up_sideslip_rad: self.gives_up_sideslip_rad.unwrap_or(45_f64.to_radians()),
         }
     }
 

@@ -31,8 +31,6 @@ use crate::vehicle::{
 /// T: time constant by which the driver keeps the speed, s.
 const THROTTLE_TIME_S: f64 = 0.5;
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
 /// What the driver does once the struck car has turned.
 #[derive(
     Debug,
@@ -185,9 +183,9 @@ impl PitDriver {
     /// probability.
     pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
         let [angle, turn, acceleration, struck_turn, end] = z;
-        let angle_rad = self.side.sign() * uniform(angle, [90.0, 180.0]) * DEGREE;
+        let angle_rad = (self.side.sign() * uniform(angle, [90.0, 180.0])).to_radians();
         let acceleration_m_s2 = uniform(acceleration, [2.0, 4.0]);
-        let struck_turn_rad = uniform(struck_turn, [30.0, 90.0]) * DEGREE;
+        let struck_turn_rad = uniform(struck_turn, [30.0, 90.0]).to_radians();
         let n_ends = PitEnd::ALL.len();
         let end_idx = uniform(end, [0.0, n_ends as f64]) as usize;
         Self {
@@ -228,7 +226,7 @@ impl PitDriver {
 
     /// The driver with usual values where nothing is stated.
     pub fn acting(&self) -> ActingPitDriver {
-        let usual_rad = self.side.sign() * 135.0 * DEGREE;
+        let usual_rad = (self.side.sign() * 135.0).to_radians();
         ActingPitDriver {
             start_s: self.start_s.unwrap_or(0.0),
             steering_wheel_rad: self.steering_wheel_rad.unwrap_or(usual_rad),
@@ -237,7 +235,7 @@ impl PitDriver {
             axle: self.axle,
             largest_acceleration_m_s2: self.largest_acceleration_m_s2.unwrap_or(3.0),
             end: self.end.unwrap_or_default(),
-            struck_turn_rad: self.struck_turn_rad.unwrap_or(45.0 * DEGREE),
+            struck_turn_rad: self.struck_turn_rad.unwrap_or(45_f64.to_radians()),
             longest_s: self.longest_s,
             brake_share: self.brake_share.unwrap_or(0.8),
         }

@@ -30,8 +30,6 @@ const REACTION_SIGMA: f64 = 0.4528;
 /// Speed below which the driver holds the steering wheel, m/s: the direction of motion is none there.
 const LEAST_SPEED_M_S: f64 = 1.0;
 
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-
 /// A driver who countersteers: what is stated of him.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -77,8 +75,8 @@ impl Countersteer {
     pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
         let [delay, sideslip, yaw_rate, largest, rate] = z;
         let delay_s = lognormal(delay, REACTION_MEDIAN_S, REACTION_SIGMA).min(REACTION_TIME.high);
-        let largest_rad = uniform(largest, [180.0, 540.0]) * DEGREE;
-        let rate_rad_s = uniform(rate, [300.0, 500.0]) * DEGREE;
+        let largest_rad = uniform(largest, [180.0, 540.0]).to_radians();
+        let rate_rad_s = uniform(rate, [300.0, 500.0]).to_radians();
         Self {
             delay_s: self.delay_s.or(Some(delay_s)),
             sideslip_gain: self.sideslip_gain.or(Some(uniform(sideslip, [0.6, 1.4]))),
@@ -120,8 +118,8 @@ impl Countersteer {
 
     /// The driver with usual values where nothing is stated.
     pub fn acting(&self) -> ActingCountersteer {
-        let largest_rad = self.largest_steering_wheel_rad.unwrap_or(360.0 * DEGREE);
-        let rate_rad_s = self.steering_wheel_rate_rad_s.unwrap_or(500.0 * DEGREE);
+        let largest_rad = self.largest_steering_wheel_rad.unwrap_or(360_f64.to_radians());
+        let rate_rad_s = self.steering_wheel_rate_rad_s.unwrap_or(500_f64.to_radians());
         ActingCountersteer {
             delay_s: self.delay_s.unwrap_or(REACTION_MEDIAN_S),
             sideslip_gain: self.sideslip_gain.unwrap_or(1.0),
