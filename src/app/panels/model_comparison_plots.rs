@@ -6,7 +6,7 @@ use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
 use impactlab_core::numerics::share_standard_error;
-use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_core::units::{KILOMETRE_PER_HOUR_M_S, Quantity, UnitSystem, significant};
 use impactlab_document::figure::{
     CoveragePoint, Figure, Role, cluster_figure, compared_case_figure, coverage_figure,
     horizon_figure, model_name, pit_figure, ranking_figure,
@@ -23,8 +23,6 @@ const PLOT_HEIGHT: f32 = 220.0;
 const BROWSER_HEIGHT: f32 = 420.0;
 /// Number of bins of the histogram of the levels at which the recorded ends lie.
 const N_BINS: usize = 10;
-/// Speed in km/h of 1 m/s.
-const KM_H_PER_M_S: f64 = 3.6;
 
 /// Draws the ranking of the models by average error, the errors by horizon, by variable and by
 /// cluster of impulse, and the calibration of the networks.
@@ -93,8 +91,8 @@ fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
     let rows: [(&str, Quantity, f64, Of); 5] = [
         ("X", Quantity::Length, 1.0, |of| of.metrics.rmse.x_m),
         ("Y", Quantity::Length, 1.0, |of| of.metrics.rmse.y_m),
-        ("v_x", Quantity::Speed, 1.0 / KM_H_PER_M_S, |of| of.metrics.rmse.vx_km_h),
-        ("v_y", Quantity::Speed, 1.0 / KM_H_PER_M_S, |of| of.metrics.rmse.vy_km_h),
+        ("v_x", Quantity::Speed, KILOMETRE_PER_HOUR_M_S, |of| of.metrics.rmse.vx_km_h),
+        ("v_y", Quantity::Speed, KILOMETRE_PER_HOUR_M_S, |of| of.metrics.rmse.vy_km_h),
         ("yaw rate", Quantity::AngularVelocity, 1.0_f64.to_radians(), |of| {
             of.metrics.rmse.yaw_rate_deg_s
         }),

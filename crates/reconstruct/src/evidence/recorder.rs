@@ -2,6 +2,7 @@
 
 use impactlab_core::data::{RecordedControls, RecordedDeltaV, RecorderRecord};
 use impactlab_core::ranges::{CONTACT_X, CONTACT_Y, EVIDENCE_SPEED, PULSE_END, SPEED, SPEED_SIGMA};
+use impactlab_core::units::KILOMETRE_PER_HOUR_M_S;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +14,7 @@ use crate::likelihood::{Comparison, SINGLE_DEGREES_OF_FREEDOM, student};
 const DELTA_V_SHARE: f64 = 0.1;
 
 /// Half of the step in which it is recorded, m/s: 1 km/h (49 CFR 563.8).
-const DELTA_V_ROUNDING_M_S: f64 = 0.5 / 3.6;
+const DELTA_V_ROUNDING_M_S: f64 = 0.5 * KILOMETRE_PER_HOUR_M_S;
 
 /// Standard deviation of a change of velocity that is small, m/s: the rounding of the record.
 const LEAST_DELTA_V_SIGMA_M_S: f64 = 0.03;
