@@ -92,7 +92,7 @@ fn the_camera_follows_the_struck_car() {
         harness.run_steps(3);
         let answer = harness.state().state().analysis().expect("a simulation");
         let motion = &answer.analysis.simulation.as_ref().expect("a motion").series;
-        let pose = impactlab_document::figure::pose_at(motion, time_s).expect("a pose");
+        let pose = impactlab_core::collision::Pose::from_motion(motion, time_s).expect("a pose");
         let target = camera(&harness).target_m;
         assert!((target[0] - pose.x_m).hypot(target[1] - pose.y_m) < 1e-9, "at {time_s} s");
     }

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::collision::ImpliedContact;
+use crate::numerics::quantile_of_sorted;
 use crate::units::{Phrase, PhraseValue, Quantity};
 
 /// Coefficient of restitution of slow contacts that is used if none is given. Together with
@@ -109,15 +110,7 @@ impl ContactDistribution {
         let middle = |value: fn(&ImpliedContact) -> f64| {
             let mut values: Vec<f64> = samples.iter().map(value).collect();
             values.sort_by(f64::total_cmp);
-            let last = values.len().checked_sub(1)? as f64;
-            let at = |u: f64| {
-                let position = u * last;
-                let (low, share) = (position.floor() as usize, position.fract());
-                let below = *values.get(low)?;
-                let above = values.get(low + 1).copied().unwrap_or(below);
-                Some(below + share * (above - below))
-            };
-            Some([at(0.05)?, at(0.95)?])
+            Some([quantile_of_sorted(&values, 0.05)?, quantile_of_sorted(&values, 0.95)?])
         };
         Some(Self {
             restitution: middle(|s| s.restitution)?.map(|e| e.clamp(0.0, 1.0)),

@@ -4,7 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::polygon::clip;
-use crate::numerics::polygon_area;
+use crate::data::{Channel, TimeSeries};
+use crate::numerics::{interpolate, polygon_area};
 use crate::ranges::OFF_OUTLINE;
 use crate::vehicle::{GeometryParameters, VehicleParameters, VehicleState};
 
@@ -121,6 +122,14 @@ impl Pose {
     /// The pose of a vehicle in a state.
     pub fn from_state(state: &VehicleState<f64>) -> Self {
         Self { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
+    }
+
+    /// The pose in a motion at a time, interpolated linearly, beyond its ends that at the nearer one. The
+    /// heading is 0 without a yaw channel; `None` without X or Y.
+    pub fn from_motion(motion: &TimeSeries, time_s: f64) -> Option<Self> {
+        let at = |channel| interpolate(motion.time_s(), motion.get(channel)?, time_s);
+        let yaw_rad = at(Channel::Yaw).unwrap_or(0.0);
+        Some(Self { x_m: at(Channel::X)?, y_m: at(Channel::Y)?, yaw_rad })
     }
 
     /// Transforms a point from body axes (origin at the CG) to world axes, m.

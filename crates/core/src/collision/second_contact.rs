@@ -11,8 +11,7 @@
 use crate::collision::{
     Footprint, MovingFootprint, Pose, TOUCH_TOLERANCE_M, overlap_centre_m, overlap_m,
 };
-use crate::data::{Channel, TimeSeries};
-use crate::numerics::interpolate;
+use crate::data::TimeSeries;
 
 /// Overlap beyond that at the end of the force from which on vehicles that have not come apart are
 /// in contact again, m. Outlines of vehicles that have crushed each other are not known more closely.
@@ -44,7 +43,7 @@ impl SecondContact {
     ) -> Option<Self> {
         let at = |time_s: f64| -> Option<[MovingFootprint; 2]> {
             let still = |(footprint, motion): (Footprint, &TimeSeries)| {
-                Some(MovingFootprint::at_rest(footprint, pose_at(motion, time_s)?))
+                Some(MovingFootprint::at_rest(footprint, Pose::from_motion(motion, time_s)?))
             };
             Some([still(struck)?, still(striking)?])
         };
@@ -78,19 +77,11 @@ impl SecondContact {
     }
 }
 
-fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<Pose> {
-    let at = |channel| interpolate(motion.time_s(), motion.get(channel)?, time_s);
-    Some(Pose {
-        x_m: at(Channel::X)?,
-        y_m: at(Channel::Y)?,
-        yaw_rad: at(Channel::Yaw).unwrap_or(0.0),
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::collision::footprint::examples::CAR;
+    use crate::data::Channel;
 
     /// A straight motion at the Y of the time, sampled every 10 ms over 4 s.
     fn motion(x_m: impl Fn(f64) -> f64, y_m: impl Fn(f64) -> f64) -> TimeSeries {

@@ -15,6 +15,7 @@ use std::io::Write;
 
 use crate::exchange::ExchangeError;
 use impactlab_core::data::{Channel, ForceAxes, ForceHistory, Sampling, TimeSeries};
+use impactlab_core::numerics::interpolate;
 use impactlab_core::units::{Quantity, STANDARD_GRAVITY_M_S2};
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_core::vehicle::frames::body_from_world;
@@ -189,7 +190,8 @@ fn body_force_n(analysis: &Analysis, force: &ForceHistory, idx: usize) -> Option
         ForceAxes::Body => Some(own),
         ForceAxes::World => {
             let series = motion(analysis)?;
-            let yaw_rad = interpolated(series, Channel::Yaw, *force.time_s.get(idx)?)?;
+            let yaw = series.get(Channel::Yaw)?;
+            let yaw_rad = interpolate(series.time_s(), yaw, *force.time_s.get(idx)?)?;
             Some(body_from_world(yaw_rad, own))
         }
     }
@@ -198,20 +200,6 @@ fn body_force_n(analysis: &Analysis, force: &ForceHistory, idx: usize) -> Option
 fn motion(analysis: &Analysis) -> Option<&TimeSeries> {
     let simulated = analysis.simulation.as_ref().map(|motion| &motion.series);
     simulated.or(analysis.reference.as_ref())
-}
-
-/// A channel at a time, linear between samples; the first and the last one beyond.
-fn interpolated(series: &TimeSeries, channel: Channel, time_s: f64) -> Option<f64> {
-    let (times, values) = (series.time_s(), series.get(channel)?);
-    let after = times.partition_point(|time| *time <= time_s);
-    let Some(before) = after.checked_sub(1) else { return values.first().copied() };
-    let (from, start_s) = (*values.get(before)?, *times.get(before)?);
-    match (values.get(after), times.get(after)) {
-        (Some(to), Some(end_s)) => {
-            Some(from + (to - from) * (time_s - start_s) / (end_s - start_s))
-        }
-        _ => Some(from),
-    }
 }
 
 /// A value in a unit of its quantity.

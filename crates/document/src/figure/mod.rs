@@ -52,6 +52,6 @@ pub use reconstruction_scene::{
     struck_at_rest,
 };
 pub use replay::{ReplayCurve, replay_curve_figure, replay_path_figure};
-pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
+pub use scene::{SceneFigure, SceneVehicle, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};
 pub use training::{LossCurve, balance_figure, loss_figure};

@@ -3,9 +3,7 @@
 use std::sync::Arc;
 
 use crate::figure::scene::{path_of, vehicle_outline};
-use crate::figure::{
-    Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series, pose_at,
-};
+use crate::figure::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series};
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::data::{Channel, TimeSeries};
 use impactlab_core::uncertainty::Caveats;
@@ -204,7 +202,9 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         let footprint = &input.footprint;
         elements.extend(vehicle_outline("central path", role, style, footprint, &pose, x.unit));
     }
-    if let Some(pose) = input.reference.and_then(|series| pose_at(series, at as f64 * STEP_S)) {
+    if let Some(pose) =
+        input.reference.and_then(|series| Pose::from_motion(series, at as f64 * STEP_S))
+    {
         let (role, style) = (Role::Reference, LineStyle::Dashed);
         let footprint = &input.footprint;
         elements.extend(vehicle_outline("recorded", role, style, footprint, &pose, x.unit));

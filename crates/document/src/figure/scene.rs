@@ -3,7 +3,6 @@
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::data::{Channel, TimeSeries};
-use impactlab_core::numerics::interpolate;
 use impactlab_core::units::{Quantity, Unit, UnitSystem};
 
 /// Time between the heading ticks along a path, s.
@@ -99,13 +98,13 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
     let n_ticks = ((end - start) / HEADING_TICK_INTERVAL_S).floor() as usize;
     for tick in 1..=n_ticks {
         let at = start + tick as f64 * HEADING_TICK_INTERVAL_S;
-        if let Some(pose) = pose_at(motion, at) {
+        if let Some(pose) = Pose::from_motion(motion, at) {
             let ends = [-HEADING_TICK_LENGTH_M, HEADING_TICK_LENGTH_M];
             let points = ends.map(|along| pose.world_from_body([along, 0.0])).to_vec();
             elements.push(FigureElement::Line(series(LineStyle::Solid, points)));
         }
     }
-    if let Some(pose) = pose_at(motion, time_s) {
+    if let Some(pose) = Pose::from_motion(motion, time_s) {
         let SceneVehicle { name, role, style, footprint, .. } = vehicle;
         elements.extend(vehicle_outline(name, *role, *style, footprint, &pose, unit));
     }
@@ -116,14 +115,6 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
 pub(super) fn path_of(series: Series, motion: &TimeSeries) -> FigureElement {
     let yaw_rad = motion.get(Channel::Yaw).map(<[f64]>::to_vec).unwrap_or_default();
     FigureElement::Path(Path { series, time_s: motion.time_s().to_vec(), yaw_rad })
-}
-
-/// Position and heading of a motion at a time, interpolated linearly. The heading is 0 without a
-/// yaw channel; `None` without X or Y.
-pub fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<Pose> {
-    let at = |channel| interpolate(motion.time_s(), motion.get(channel)?, time_s);
-    let yaw_rad = at(Channel::Yaw).unwrap_or(0.0);
-    Some(Pose { x_m: at(Channel::X)?, y_m: at(Channel::Y)?, yaw_rad })
 }
 
 /// Points in m converted into a length unit.
@@ -148,7 +139,7 @@ mod tests {
             motion.insert(channel, values).unwrap();
         }
         let pose = Pose { x_m: 15.0, y_m: 0.0, yaw_rad: 0.5 };
-        assert_eq!(pose_at(&motion, 1.5), Some(pose));
+        assert_eq!(Pose::from_motion(&motion, 1.5), Some(pose));
         let vehicle = SceneVehicle {
             name: "car",
             role: Role::Target,
