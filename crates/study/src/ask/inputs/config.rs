@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{BadCases, StudyError};
 use impactlab_core::data::write::WriterLock;
+use impactlab_networks::response::{ResponseConfig, ResponseModel};
 
 /// Where the settings of a training come from.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -25,6 +26,20 @@ impl ConfigChoice {
         match self {
             Self::Default => None,
             Self::File(path) => Some(path),
+        }
+    }
+
+    /// The settings of a response network.
+    ///
+    /// - `start`: the network that it is trained on.
+    pub(crate) fn response(
+        &self,
+        start: Option<&ResponseModel>,
+    ) -> Result<ResponseConfig, StudyError> {
+        match (self.file(), start) {
+            (Some(path), _) => Ok(ResponseConfig::load(path)?),
+            (None, Some(start)) => Ok(start.config().clone()),
+            (None, None) => Ok(ResponseConfig::default()),
         }
     }
 }

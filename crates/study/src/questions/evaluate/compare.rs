@@ -102,12 +102,7 @@ impl CompareRequest {
         library: &Library,
     ) -> Result<(ResponseConfig, Option<Arc<ResponseModel>>), StudyError> {
         let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
-        let config = match (self.config.file(), &start) {
-            (Some(path), _) => ResponseConfig::load(path)?,
-            (None, Some(start)) => start.config().clone(),
-            (None, None) => ResponseConfig::default(),
-        };
-        Ok((config, start))
+        Ok((self.config.response(start.as_deref())?, start))
     }
 
     /// The trajectories, and why others are left out.

@@ -103,11 +103,7 @@ impl FineTuneRequest {
         library: &Library,
     ) -> Result<(ResponseConfig, Option<Arc<ResponseModel>>), StudyError> {
         let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
-        let mut config = match (self.training.config.file(), &start) {
-            (Some(path), _) => ResponseConfig::load(path)?,
-            (None, Some(start)) => start.config().clone(),
-            (None, None) => ResponseConfig::default(),
-        };
+        let mut config = self.training.config.response(start.as_deref())?;
         if self.training.config == ConfigChoice::Default && self.logs.is_some() {
             config.effects = config.effects.few_samples();
         }

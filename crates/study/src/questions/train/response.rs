@@ -96,10 +96,7 @@ impl TrainResponseRequest {
     /// # Errors
     /// [`StudyError::Learning`] with what is wrong with the file.
     pub fn settings(&self) -> Result<ResponseConfig, StudyError> {
-        let config = match self.training.config.file() {
-            Some(path) => ResponseConfig::load(path)?,
-            None => ResponseConfig::default(),
-        };
+        let config = self.training.config.response(None)?;
         Ok(if self.plain { config.plain() } else { config })
     }
 
