@@ -59,11 +59,16 @@ impl Preset {
 
     /// Parameters of the vehicle.
     pub fn parameters(self) -> VehicleParameters {
-        let path = Path::new("assets/vehicles").join(self.id()).with_extension("toml");
-        match VehicleParameters::parse(self.text(), &path) {
-            Ok(parameters) => parameters,
-            Err(error) => unreachable!("a shipped vehicle is bad (a test reads them all): {error}"),
-        }
+        shipped_vehicle("assets/vehicles", self.id(), self.text())
+    }
+}
+
+/// Parameters of a vehicle by its file, which is part of the program.
+pub(in crate::vehicle) fn shipped_vehicle(folder: &str, id: &str, text: &str) -> VehicleParameters {
+    let path = Path::new(folder).join(id).with_extension("toml");
+    match VehicleParameters::parse(text, &path) {
+        Ok(parameters) => parameters,
+        Err(error) => unreachable!("a shipped vehicle is bad (a test reads them all): {error}"),
     }
 }
 

@@ -2,9 +2,8 @@
 //! `assets/vehicles/library/*.toml`. Each file names the source of its numbers; what it does not state
 //! is estimated by rule.
 
-use std::path::Path;
-
 use crate::vehicle::VehicleParameters;
+use crate::vehicle::preset::shipped_vehicle;
 
 macro_rules! library {
     ($($file:literal,)+) => {
@@ -85,11 +84,7 @@ impl LibraryVehicle {
 
     /// Parameters of the vehicle.
     pub fn parameters(self) -> VehicleParameters {
-        let path = Path::new("assets/vehicles/library").join(self.id).with_extension("toml");
-        match VehicleParameters::parse(self.text, &path) {
-            Ok(parameters) => parameters,
-            Err(error) => unreachable!("a shipped vehicle is bad (a test reads them all): {error}"),
-        }
+        shipped_vehicle("assets/vehicles/library", self.id, self.text)
     }
 }
 
