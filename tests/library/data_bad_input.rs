@@ -119,15 +119,15 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time_s,Fx [m],Fy [m]\n0,1,1\n0.1,1,1\n",
-            r#"f.csv:1:2: "Fx [m]" is in "m", expected a unit of force (N, kN, MN, lbf, kip, daN, kgf); correct the header or map the column with its unit, e.g. --map fx=2:N"#,
+            r#"f.csv:1:2: "Fx [m]" is in "m", expected a unit of force (N, kN, MN, lbf, kip, daN, kgf, tf, US tonf); correct the header or map the column with its unit, e.g. --map fx=2:N"#,
         ),
         (
             b"time [fortnight],fx_n,fy_n\n0,1,1\n0.1,1,1\n",
-            r#"f.csv:1:1: "time [fortnight]" is in "fortnight", expected a unit of time (s, ms, \u{b5}s, ns, min); correct the header or map the column with its unit, e.g. --map time=1:s"#,
+            r#"f.csv:1:1: "time [fortnight]" is in "fortnight", expected a unit of time (s, ms, \u{b5}s, ns, min, h); correct the header or map the column with its unit, e.g. --map time=1:s"#,
         ),
         (
             b"t;fx;fy\ns;kN;kg\n0;1;1\n1;1;1\n",
-            r#"f.csv:1:3: "fy" is in "kg", expected a unit of force (N, kN, MN, lbf, kip, daN, kgf); correct the header or map the column with its unit, e.g. --map fy=3:N"#,
+            r#"f.csv:1:3: "fy" is in "kg", expected a unit of force (N, kN, MN, lbf, kip, daN, kgf, tf, US tonf); correct the header or map the column with its unit, e.g. --map fy=3:N"#,
         ),
         (
             b"time_s,fx_n,fy_n,Fx [kN]\n0,1,1,1\n1,1,1,1\n",

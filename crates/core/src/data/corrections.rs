@@ -282,7 +282,7 @@ impl Reading<'_> {
     fn units(&self, channel: Channel) -> impl Iterator<Item = (f64, Unit)> + use<'_> {
         let column = self.columns.get(&channel).filter(|column| !column.terms.is_empty());
         column.into_iter().flat_map(move |column| {
-            let units = channel.quantity().units().iter();
+            let units = channel.quantity().units().iter().filter(|unit| unit.is_guessed());
             units.map(|unit| (unit.si_per_unit / column.unit.si_per_unit, *unit))
         })
     }

@@ -256,7 +256,8 @@ fn in_other_unit(
     let is_plain = |column: &&ColumnUse| column.formula.is_none() && column.terms.len() == 1;
     let before = used.first()?.unit.si_per_unit;
     let off = |unit: &Unit| (unit.si_per_unit / before / wanted - 1.0).abs();
-    let near = quantity.units().iter().filter(|unit| off(unit) < FITTING / 2.0);
+    let near =
+        quantity.units().iter().filter(|unit| unit.is_guessed() && off(unit) < FITTING / 2.0);
     let unit = near.min_by(|a, b| off(a).total_cmp(&off(b)))?;
     if !used.iter().all(is_plain) {
         return None;

@@ -174,11 +174,11 @@ fn a_column_that_names_its_side_is_read_by_it() {
 /// One unit that is not known neither hides the others nor makes another kind of file of it.
 #[test]
 fn a_unit_that_is_not_known_is_named_with_its_column() {
-    let loaded = read("t;x;y;yaw\ns;m;m;gon\n0;0;0;0\n1;9;0;0\n", "").unwrap();
+    let loaded = read("t;x;y;yaw\ns;m;m;mils\n0;0;0;0\n1;9;0;0\n", "").unwrap();
     assert_eq!(values(&loaded, Channel::X), [0.0, 9.0]);
-    assert!(is_said(&loaded, "\"gon\" is no unit of angle"), "{:?}", loaded.notes);
-    let said = error("t [s];x [yd];y [yd]\n0;0;0\n1;9;0\n", "");
-    assert!(said.contains("is in \"yd\", expected a unit of length"), "{said}");
+    assert!(is_said(&loaded, "\"mils\" is no unit of angle"), "{:?}", loaded.notes);
+    let said = error("t [s];x [rod];y [rod]\n0;0;0\n1;9;0\n", "");
+    assert!(said.contains("is in \"rod\", expected a unit of length"), "{said}");
 }
 
 /// Maps write longitude and latitude as x and y.

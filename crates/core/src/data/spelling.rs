@@ -175,20 +175,28 @@ fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
     let key = match (quantity, key) {
         (Quantity::Time, "ss" | "sek") => "s",
         (Quantity::Time, "millis" | "mss") => "ms",
+        (Quantity::Time, "minute" | "minutes" | "mins") => "min",
+        (Quantity::Time, "hr" | "hrs" | "hour" | "hours" | "std") => "h",
         (Quantity::Length, "meter" | "metre" | "meters" | "metres") => "m",
         (Quantity::Length, "foot" | "feet") => "ft",
         (Quantity::Length, "inch" | "inches") => "in",
+        (Quantity::Length, "yard" | "yards" | "yds") => "yd",
+        (Quantity::Length, "mile" | "miles") => "mi",
         (Quantity::Speed, "mps" | "ms1") => "ms",
         (Quantity::Speed, "kph" | "kmph") => "kmh",
         (Quantity::Speed, "fps") => "fts",
+        (Quantity::Speed, "ips" | "inchs") => "ins",
+        (Quantity::Speed, "mih") => "mph",
         (Quantity::Speed, "kt" | "kts" | "kns" | "knot" | "knots") => "kn",
         (Quantity::Acceleration, "mss") => "ms2",
         (Quantity::Acceleration, "gs") => "g",
+        (Quantity::Acceleration, "gal") => "cms2",
         (Quantity::AngularVelocity, "dps" | "degs1") => "degs",
         (Quantity::AngularVelocity, "rads1" | "1s" | "s1") => "rads",
         (Quantity::Force, "newton" | "newtons") => "n",
         (Quantity::Force, "lb" | "lbs") => "lbf",
         (Quantity::Force, "kips") => "kip",
+        (Quantity::Force, "kp") => "kgf",
         (Quantity::Mass, "lbs") => "lb",
         (Quantity::Moment, "inlb" | "inlbs" | "lbin" | "lbsin" | "inlbf") => "lbfin",
         (Quantity::Moment, "ftlb" | "ftlbs" | "lbft" | "lbsft" | "ftlbf") => "lbfft",
@@ -362,6 +370,17 @@ mod tests {
             ("Fx [daN]", Channel::Fx, "daN"),
             ("Fx [kgf]", Channel::Fx, "kgf"),
             ("Mz (in-lb)", Channel::Mz, "lbf in"),
+            ("Mz [kip-ft]", Channel::Mz, "kip ft"),
+            ("Fx [tf]", Channel::Fx, "tf"),
+            ("Fx (US tonf)", Channel::Fx, "US tonf"),
+            ("x [yds]", Channel::X, "yd"),
+            ("vx_cm_s", Channel::Vx, "cm/s"),
+            ("vx [in/sec]", Channel::Vx, "in/s"),
+            ("speed [yd/s]", Channel::Speed, "yd/s"),
+            ("ax [mg]", Channel::Ax, "mg"),
+            ("yaw [gon]", Channel::Yaw, "gon"),
+            ("yaw rate [mrad/s]", Channel::YawRate, "mrad/s"),
+            ("time [h]", Channel::Time, "h"),
             ("speed [kn]", Channel::Speed, "kn"),
             ("Speed (Knots)", Channel::Speed, "kn"),
             ("vx_kts", Channel::Vx, "kn"),
@@ -382,6 +401,7 @@ mod tests {
             ("Fx [mn]", Channel::Fx, "mn"),
             ("Mz [mNm]", Channel::Mz, "mNm"),
             ("fx_kg", Channel::Fx, "kg"),
+            ("Fx [tonf]", Channel::Fx, "tonf"),
             ("speed [kN]", Channel::Speed, "kN"),
             ("Fx [kts]", Channel::Fx, "kts"),
             ("yaw [grad]", Channel::Yaw, "grad"),
@@ -431,6 +451,6 @@ mod tests {
         let is_row = |text: &str| is_unit_row(text.split(';'));
         assert!(is_row("s;kN;kN") && is_row("[s];[kN];[?]") && is_row("s;;-;N"));
         assert!(!is_row("time;kN") && !is_row(";;") && !is_row("1;2"));
-        assert!(is_row("s;m;m;gon") && !is_row("s;m;gon;mils") && !is_row("s;m;m;yaw"));
+        assert!(is_row("s;m;m;mils") && !is_row("s;m;mils;cubits") && !is_row("s;m;m;yaw"));
     }
 }

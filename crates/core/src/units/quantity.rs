@@ -21,11 +21,18 @@ pub const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
 
 const FOOT_M: f64 = 0.3048;
 const INCH_M: f64 = 0.0254;
+const YARD_M: f64 = 3.0 * FOOT_M;
+const MILE_M: f64 = 5280.0 * FOOT_M;
 const POUND_KG: f64 = 0.453_592_37;
 const POUND_FORCE_N: f64 = POUND_KG * STANDARD_GRAVITY_M_S2;
 const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
+/// The gon, of which a right angle has 100: total stations are in it.
+const GON_RAD: f64 = std::f64::consts::PI / 200.0;
 const REVOLUTION_PER_MINUTE_RAD_S: f64 = std::f64::consts::PI / 30.0;
+
+/// Units that are so near to others, the metre and the degree, that nobody guesses them from noisy numbers.
+const NEVER_GUESSED: [&str; 4] = ["yd", "yd/s", "gon", "gon/s"];
 
 /// The physical quantity that a number measures.
 #[derive(
@@ -120,6 +127,11 @@ impl Unit {
     pub fn from_si(&self, value_si: f64) -> f64 {
         value_si / self.si_per_unit
     }
+
+    /// Whether it may be proposed for numbers whose size it would explain; others are read where they are stated.
+    pub fn is_guessed(&self) -> bool {
+        !NEVER_GUESSED.contains(&self.symbol)
+    }
 }
 
 impl Quantity {
@@ -190,32 +202,38 @@ impl Quantity {
         }
         match self {
             Self::Time => units!(Time: "s" = 1.0, "ms" = 1e-3, "µs" = 1e-6, "ns" = 1e-9,
-                "min" = 60.0),
+                "min" = 60.0, "h" = 3600.0),
             Self::Length => units!(Length: "m" = 1.0, "mm" = 1e-3, "cm" = 1e-2, "km" = 1e3,
-                "ft" = FOOT_M, "in" = INCH_M),
+                "ft" = FOOT_M, "in" = INCH_M, "yd" = YARD_M, "mi" = MILE_M),
             Self::Speed => units!(Speed: "m/s" = 1.0, "mm/s" = 1e-3, "mm/ms" = 1.0,
                 "km/h" = KILOMETRE_PER_HOUR_M_S, "mph" = MILE_PER_HOUR_M_S, "ft/s" = FOOT_M,
-                "kn" = KNOT_M_S),
+                "kn" = KNOT_M_S, "cm/s" = 1e-2, "in/s" = INCH_M, "yd/s" = YARD_M),
             Self::Acceleration => units!(Acceleration: "m/s²" = 1.0, "mm/s²" = 1e-3,
-                "g" = STANDARD_GRAVITY_M_S2, "ft/s²" = FOOT_M),
-            Self::Angle => units!(Angle: "rad" = 1.0, "deg" = DEGREE_RAD),
+                "g" = STANDARD_GRAVITY_M_S2, "ft/s²" = FOOT_M, "cm/s²" = 1e-2, "in/s²" = INCH_M,
+                "mg" = 1e-3 * STANDARD_GRAVITY_M_S2),
+            Self::Angle => units!(Angle: "rad" = 1.0, "deg" = DEGREE_RAD, "mrad" = 1e-3,
+                "gon" = GON_RAD),
             Self::AngularVelocity => units!(AngularVelocity: "rad/s" = 1.0, "deg/s" = DEGREE_RAD,
-                "rpm" = REVOLUTION_PER_MINUTE_RAD_S),
+                "rpm" = REVOLUTION_PER_MINUTE_RAD_S, "mrad/s" = 1e-3, "gon/s" = GON_RAD),
             Self::Mass => units!(Mass: "kg" = 1.0, "g" = 1e-3, "t" = 1e3, "lb" = POUND_KG,
                 "slug" = SLUG_KG),
             Self::MomentOfInertia => units!(MomentOfInertia: "kg m²" = 1.0,
-                "slug ft²" = SLUG_KG * FOOT_M * FOOT_M, "lb ft²" = POUND_KG * FOOT_M * FOOT_M),
+                "slug ft²" = SLUG_KG * FOOT_M * FOOT_M, "lb ft²" = POUND_KG * FOOT_M * FOOT_M,
+                "lb in²" = POUND_KG * INCH_M * INCH_M, "lbf in s²" = POUND_FORCE_N * INCH_M),
             Self::Force => units!(Force: "N" = 1.0, "kN" = 1e3, "MN" = 1e6, "lbf" = POUND_FORCE_N,
-                "kip" = 1e3 * POUND_FORCE_N, "daN" = 10.0, "kgf" = STANDARD_GRAVITY_M_S2),
+                "kip" = 1e3 * POUND_FORCE_N, "daN" = 10.0, "kgf" = STANDARD_GRAVITY_M_S2,
+                "tf" = 1e3 * STANDARD_GRAVITY_M_S2, "US tonf" = 2e3 * POUND_FORCE_N),
             Self::Moment => units!(Moment: "N m" = 1.0, "kN m" = 1e3, "N mm" = 1e-3,
-                "lbf ft" = POUND_FORCE_N * FOOT_M, "lbf in" = POUND_FORCE_N * INCH_M),
+                "lbf ft" = POUND_FORCE_N * FOOT_M, "lbf in" = POUND_FORCE_N * INCH_M,
+                "kip ft" = 1e3 * POUND_FORCE_N * FOOT_M, "daN m" = 10.0,
+                "kgf m" = STANDARD_GRAVITY_M_S2),
             Self::Impulse => units!(Impulse: "N s" = 1.0, "kN s" = 1e3, "lbf s" = POUND_FORCE_N),
             Self::AngularImpulse => units!(AngularImpulse: "N m s" = 1.0, "kN m s" = 1e3,
                 "lbf ft s" = POUND_FORCE_N * FOOT_M),
             Self::Energy => units!(Energy: "J" = 1.0, "kJ" = 1e3,
                 "ft lbf" = POUND_FORCE_N * FOOT_M),
             Self::ForcePerLength => units!(ForcePerLength: "N/m" = 1.0, "kN/m" = 1e3, "N/cm" = 1e2,
-                "lbf/in" = POUND_FORCE_N / INCH_M),
+                "lbf/in" = POUND_FORCE_N / INCH_M, "N/mm" = 1e3, "lbf/ft" = POUND_FORCE_N / FOOT_M),
             Self::ForcePerArea => units!(ForcePerArea: "N/m²" = 1.0, "kN/m²" = 1e3, "N/cm²" = 1e4,
                 "lbf/in²" = POUND_FORCE_N / (INCH_M * INCH_M)),
             Self::Ratio => units!(Ratio: "" = 1.0, "%" = 0.01),
@@ -235,6 +253,27 @@ mod tests {
                 let back = unit.from_si(unit.to_si(12.5));
                 assert!((back - 12.5).abs() < 1e-12, "{quantity:?} {}", unit.symbol);
             }
+        }
+    }
+
+    /// Factors of table B.8 of NIST SP 811, rounded there to seven digits.
+    #[test]
+    fn units_of_surveys_and_of_the_us_have_their_sizes() {
+        for (quantity, symbol, expected) in [
+            (Quantity::Time, "h", 3600.0),
+            (Quantity::Length, "yd", 0.9144),
+            (Quantity::Length, "mi", 1_609.344),
+            (Quantity::Speed, "in/s", 0.0254),
+            (Quantity::Angle, "gon", 0.015_707_96),
+            (Quantity::MomentOfInertia, "lb in²", 2.926_397e-4),
+            (Quantity::MomentOfInertia, "lbf in s²", 0.112_984_8),
+            (Quantity::Force, "US tonf", 8_896.443),
+            (Quantity::Moment, "kip ft", 1_355.818),
+            (Quantity::ForcePerLength, "lbf/ft", 14.593_90),
+        ] {
+            let unit = quantity.units().iter().find(|unit| unit.symbol == symbol).unwrap();
+            let off = unit.si_per_unit / expected - 1.0;
+            assert!(off.abs() < 1e-6, "{symbol}: {}", unit.si_per_unit);
         }
     }
 

@@ -33,7 +33,7 @@ pub enum TypedError {
 }
 
 /// What else a unit is called.
-const OTHER_NAMES: [(&str, &str); 28] = [
+const OTHER_NAMES: &[(&str, &str)] = &[
     ("°", "deg"),
     ("°/s", "deg/s"),
     ("degree", "deg"),
@@ -41,8 +41,10 @@ const OTHER_NAMES: [(&str, &str); 28] = [
     ("kph", "km/h"),
     ("kmh", "km/h"),
     ("mps", "m/s"),
+    ("m/sec", "m/s"),
     ("mi/h", "mph"),
     ("fps", "ft/s"),
+    ("ips", "in/s"),
     ("kt", "kn"),
     ("kts", "kn"),
     ("knot", "kn"),
@@ -53,14 +55,33 @@ const OTHER_NAMES: [(&str, &str); 28] = [
     ("\"", "in"),
     ("inch", "in"),
     ("inches", "in"),
+    ("yard", "yd"),
+    ("yards", "yd"),
+    ("mile", "mi"),
+    ("miles", "mi"),
     ("lbs", "lb"),
+    ("pound", "lb"),
     ("pounds", "lb"),
+    ("slugs", "slug"),
+    ("tonne", "t"),
     ("tonnes", "t"),
     ("sec", "s"),
     ("us", "µs"),
+    ("hr", "h"),
+    ("hour", "h"),
+    ("hours", "h"),
     ("nm", "n m"),
     ("ftlb", "ft lbf"),
     ("lbft", "lbf ft"),
+    ("lbfts2", "slug ft²"),
+    ("ftlbs2", "slug ft²"),
+    ("lbffts2", "slug ft²"),
+    ("lbins2", "lbf in s²"),
+    ("kp", "kgf"),
+    ("kips", "kip"),
+    ("psi", "lbf/in²"),
+    ("lb/in", "lbf/in"),
+    ("lb/in2", "lbf/in²"),
     ("percent", "%"),
 ];
 
@@ -175,7 +196,7 @@ fn without_groups(whole: &str) -> Option<String> {
 fn is_called(symbol: &str, typed: &str) -> bool {
     let plain = |text: &str| -> String {
         let kept = text.to_lowercase().replace('²', "2");
-        kept.chars().filter(|c| !c.is_whitespace() && !"·*^".contains(*c)).collect()
+        kept.chars().filter(|c| !c.is_whitespace() && !"·*^-".contains(*c)).collect()
     };
     // A kilonewton is no knot.
     let is_kilonewton = symbol == "kn" && typed.contains('N') && plain(typed) == symbol;
@@ -225,6 +246,12 @@ mod tests {
         );
         is(Quantity::Length, "15'", 15.0 * 0.3048);
         is(Quantity::Length, "6 in", 0.1524);
+        is(Quantity::MomentOfInertia, "1000 ft-lb-s²", 1355.817_948_331_4);
+        is(Quantity::MomentOfInertia, "2400 lb-in-s²", 271.163_589_666_3);
+        is(Quantity::Angle, "100 gon", 90_f64.to_radians());
+        is(Quantity::Speed, "900 ips", 22.86);
+        is(Quantity::Length, "12 yd", 10.9728);
+        is(Quantity::ForcePerArea, "1 psi", 6_894.757_293_168);
         is(Quantity::Ratio, "0,55", 0.55);
         is(Quantity::Ratio, "55 %", 0.55);
         assert_eq!(pounds("1860 kg"), Ok(1860.0));
