@@ -84,6 +84,7 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
     };
     let damage = damage_off_car(&evidence.damage, cars);
     let odd = evidence.odd_sigmas().into_iter().chain(evidence.odd_drags());
+    let odd = odd.chain(evidence.odd_numbers());
     let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
     vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
 }

@@ -14,6 +14,7 @@ mod numbers;
 mod settings;
 
 mod table;
+mod usual;
 
 pub use numbers::*;
 pub use range::{OutOfRange, Range};

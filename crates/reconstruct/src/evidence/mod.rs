@@ -15,6 +15,7 @@ mod kind;
 mod mark;
 mod mirror;
 mod odd_drag;
+mod odd_number;
 mod odd_sigma;
 mod places;
 mod position;

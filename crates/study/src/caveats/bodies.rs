@@ -27,7 +27,26 @@ pub(crate) fn doubtful(scenario: &Scenario) -> Vec<Caveat> {
     let found = Role::ALL.into_iter().filter(is_vehicle).flat_map(|role| {
         uneven_caveat(scenario, role).into_iter().chain(cg_caveat(scenario, role))
     });
-    restrictions::backwards(scenario).into_iter().chain(found).collect()
+    restrictions::backwards(scenario)
+        .into_iter()
+        .chain(found)
+        .chain(odd_numbers(scenario))
+        .collect()
+}
+
+/// Numbers of the file that are hardly meant in their units. A wall is as wide as it is.
+fn odd_numbers(scenario: &Scenario) -> impl Iterator<Item = Caveat> {
+    let is_fixed = scenario.striking.fixed.is_some();
+    scenario.ranges().into_iter().filter_map(move |(key, value, range)| {
+        let is_striking = key.starts_with("bullet");
+        let text = range.odd(&key, value).filter(|_| !(is_fixed && key.starts_with("bullet.")))?;
+        let subject = match is_striking {
+            true => CaveatSubject::Striking,
+            false => CaveatSubject::Vehicle,
+        };
+        let caveat = Caveat::new(CaveatKind::DoubtfulData, text);
+        Some(Caveat { subject: Some(subject), ..caveat })
+    })
 }
 
 /// What the data sheet of a vehicle states and no car of its other figures has.
@@ -131,7 +150,10 @@ fn uneven_caveat(scenario: &Scenario, role: Role) -> Option<Caveat> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass, built_in_vehicle};
+    use impactlab_core::collision::ScenarioSkid;
+    use impactlab_core::vehicle::{
+        Braking, DataSheet, Ending, SheetQuantity, VehicleClass, built_in_vehicle,
+    };
     use std::path::Path;
 
     #[test]
@@ -161,6 +183,33 @@ mod tests {
         let words =
             "of the striking vehicle, a yaw inertia of 3600 kg m² does not fit a mass of 2 kg and";
         assert!(light.text.starts_with(words), "{light}");
+    }
+
+    /// A brake after 350 s never acts in a motion of seconds, and nobody saw it.
+    #[test]
+    fn numbers_of_a_scenario_in_another_unit_are_named() {
+        let brake = Braking {
+            start_s: 350.0,
+            share_of_friction: 0.8,
+            rise_s: 0.3,
+            front_share: None,
+            lock_delay_s: 0.0,
+            abs: None,
+        };
+        let skid = ScenarioSkid { length_m: 20.0, drag_factor: 1.9 };
+        let mut scenario = Scenario::example();
+        scenario.ending = Some(Ending { brake: Some(brake), ..Ending::default() });
+        scenario.striking.skid = Some(skid);
+        let found = doubtful(&scenario);
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert_eq!(found[0].subject, Some(CaveatSubject::Striking));
+        assert!(
+            found[0].text.starts_with("bullet.skid_drag_factor is 1.9, and of"),
+            "{}",
+            found[0]
+        );
+        assert!(found[1].text.starts_with("ending.brake.start_s is 350 s, and of"), "{}", found[1]);
+        assert!(found[1].text.ends_with("is it in ms?"), "{}", found[1]);
     }
 
     #[test]
