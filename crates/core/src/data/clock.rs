@@ -124,6 +124,29 @@ pub(super) fn go_on(time_s: &mut [f64]) -> Option<Note> {
     Some(Note::GoesOn { period_s, n_turns })
 }
 
+/// How far the first instant of a second record may lie from that of the first one, as a share of its duration.
+const AGAIN_SHARE: f64 = 0.1;
+
+/// Refuses a time that goes back to where it began, as that of a second event or run below the first one.
+///
+/// - `time_s`: of all rows, s.
+pub(super) fn second_record(table: &Table, time: &ColumnUse, time_s: &[f64]) -> Option<DataError> {
+    let goes_back = |pair: &[f64]| pair[1] < pair[0];
+    let at = 1 + time_s.windows(2).position(goes_back)?;
+    let (first_s, before_s, after_s) = (*time_s.first()?, time_s[at - 1], time_s[at]);
+    let is_again = (after_s - first_s).abs() <= AGAIN_SHARE * (before_s - first_s);
+    let n_records = 1 + time_s.windows(2).filter(|pair| goes_back(pair)).count();
+    is_again.then(|| {
+        let expected = format!(
+            "a time after {before_s} s in the row before: it goes back to where the record began, at {first_s} s, \
+             so that this is another event or run; of {n_records} below each other, put each into a file of its \
+             own, the first one up to line {}",
+            table.line(at - 1)
+        );
+        table.cell_error(at, time.number.saturating_sub(1), &expected)
+    })
+}
+
 /// Asks for the unit of a clock that nobody has stated and that counts parts of seconds since 1970.
 ///
 /// # Errors

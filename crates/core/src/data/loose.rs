@@ -300,6 +300,7 @@ fn load_columns(
         if column.channel == Channel::Time {
             let (time_s, note) = instants_s(table, column, &settings)?;
             goes_on = note;
+            clock::second_record(table, column, &time_s).map_or(Ok(()), Err)?;
             let time = TimeSeries::new(time_s);
             series = time.map_err(|error| out_of_order(table, column, error))?;
             check_steps(table, column, series.time_s())?;

@@ -195,3 +195,20 @@ fn degrees_that_are_read_as_metres_are_said() {
         assert!(!is_said(&metres, "longitude"), "{:?}", metres.notes);
     }
 }
+
+/// Two runs below each other are told as such, whether the header stands between them or not.
+#[test]
+fn a_second_record_below_the_first_one_is_told() {
+    let rows = |from: f64| -> String {
+        (0..10).map(|i| format!("{},{},0\n", from + 0.1 * f64::from(i), 2 * i)).collect()
+    };
+    let head = "t [s],x [m],y [m]\n";
+    let said = error(&format!("{head}{}{}", rows(-0.9), rows(-0.9)), "");
+    assert!(said.contains(":12:1: \"t [s]\" is \"-0.9\""), "{said}");
+    assert!(said.contains("of 2 below each other") && said.contains("up to line 11"), "{said}");
+    let said = error(&format!("{head}{}{head}{}", rows(0.0), rows(0.0)), "");
+    assert!(said.contains("the header stands here again"), "{said}");
+    // A row out of order is one.
+    let said = error(&format!("{head}0,0,0\n1,9,0\n0.5,4,0\n2,18,0\n"), "");
+    assert!(said.contains("sort the rows"), "{said}");
+}

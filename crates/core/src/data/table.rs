@@ -361,8 +361,15 @@ impl Table {
         column_idx: usize,
         expected: &str,
     ) -> DataError {
-        let is_blank = self.cell(row_idx, column_idx).trim().is_empty();
-        let hint = if is_blank { or_recorder(&self.header.names) } else { "" };
+        let cell = self.cell(row_idx, column_idx);
+        let is_header = self.header.names.get(column_idx).is_some_and(|name| *name == cell);
+        let hint = match (cell.trim().is_empty(), is_header) {
+            (true, _) => or_recorder(&self.header.names),
+            (false, true) => {
+                "; the header stands here again: put the table below it into a file of its own"
+            }
+            (false, false) => "",
+        };
         DataError::Cell {
             path: self.path.clone(),
             line: self.line(row_idx),

@@ -32,6 +32,10 @@ const TIRES_M_S2: f64 = 12.0;
 /// to 20 s.
 const COVERED_S: [f64; 2] = [0.1, 60.0];
 
+/// What is said of times before a crash that go back.
+const OTHER_EVENT: &str = "the times before the crash do not increase, and none is taken: a table has one event; put \
+                           each event into a file of its own";
+
 /// Rounding of a recorded speed, m/s: 1 mph and its halves.
 pub(super) const ROUNDING_M_S: f64 = 0.6;
 
@@ -135,7 +139,7 @@ impl RecorderRecord {
         let in_time = |row: &usize| time_s.get(*row).copied().flatten().map(|at_s| at_s + 0.0);
         let time_s: Vec<f64> = rows.iter().filter_map(in_time).collect();
         if time_s.windows(2).any(|pair| pair.first() >= pair.last()) {
-            doubts.push("the times before the crash do not increase; none is taken".to_owned());
+            doubts.push(OTHER_EVENT.to_owned());
             return;
         }
         doubts.extend(wrong_span(&time_s));
@@ -256,7 +260,8 @@ pub(super) fn no_delta_v(pairs: &[(f64, f64)]) -> Option<String> {
     let mut steps = pairs.iter().zip(pairs.iter().skip(1));
     if let Some(((t0, _), (t1, _))) = steps.find(|((t0, _), (t1, _))| t1 < t0) {
         return Some(format!(
-            "goes back from {t0} to {t1} s: a table has one event, with times that increase"
+            "goes back from {t0} to {t1} s: a table has one event, with times that increase; put each event into a file \
+             of its own"
         ));
     }
     if end_s >= LONGEST_S {
