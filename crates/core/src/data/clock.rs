@@ -5,10 +5,11 @@ use crate::data::columns::{ColumnUse, Term, open_question};
 use crate::data::spelling::{self, letters_and_digits};
 use crate::data::time_of_day::{DAY_S, HOUR_S};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, Correction, DataError, FileKind, Note, Table,
-    TimeSeries,
+    Channel, ColumnMap, ColumnRef, ColumnSource, Correction, DataError, FileKind, Note,
+    SeriesError, Table, TimeSeries,
 };
 use crate::numerics::quantile_of_sorted;
+use crate::ranges::TIME_STEP;
 use crate::units::{Quantity, Unit};
 
 /// Seconds since 1970 in the years 2001 to 2096, by which such a clock is known.
@@ -244,6 +245,41 @@ pub(super) fn shift_text(first_s: f64) -> String {
 /// The shift with which a record begins at 0.
 pub(super) fn shift_to_zero(first_s: f64) -> Correction {
     Correction::shift(0.0 - first_s)
+}
+
+/// Checks the time between the samples.
+///
+/// # Errors
+/// [`DataError::TimeStep`] at the first one that no instrument and no record has.
+pub(super) fn check_steps(
+    table: &Table,
+    column: &ColumnUse,
+    time_s: &[f64],
+) -> Result<(), DataError> {
+    for (row_idx, pair) in time_s.windows(2).enumerate() {
+        TIME_STEP.check(pair[1] - pair[0]).map_err(|step| DataError::TimeStep {
+            path: table.path().to_owned(),
+            line: table.line(row_idx + 1),
+            column: column.number,
+            step,
+        })?;
+    }
+    Ok(())
+}
+
+/// The error for a time that does not rise.
+pub(super) fn out_of_order(table: &Table, time: &ColumnUse, error: SeriesError) -> DataError {
+    let path = table.path().to_owned();
+    match error {
+        SeriesError::TimeOrder { sample_idx, before, after } => DataError::TimeOrder {
+            path,
+            line: table.line(sample_idx),
+            column: time.number,
+            before_s: before,
+            after_s: after,
+        },
+        source => DataError::Series { path, source },
+    }
 }
 
 #[cfg(test)]

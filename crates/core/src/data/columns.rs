@@ -74,7 +74,7 @@ pub(super) fn sum(columns: &[(usize, Option<Unit>)]) -> ColumnSource {
 }
 
 /// The columns of a table by channel, and the remarks on them.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct Columns {
     pub by_channel: BTreeMap<Channel, ColumnUse>,
     pub notes: Vec<Note>,

@@ -569,6 +569,11 @@ impl DataError {
         answers.into_iter().filter_map(|answer| Correction::from_answer(map, answer)).collect()
     }
 
+    /// Whether a cell is blank that should hold a number.
+    pub(super) fn is_of_blank_cell(&self) -> bool {
+        matches!(self, Self::Cell { text, .. } if text.is_empty())
+    }
+
     /// Whether a mapping of columns to channels and units by the user may solve the problem.
     pub fn needs_mapping(&self) -> bool {
         if let Self::InSheet { error, .. } | Self::OfOption { error, .. } = self {

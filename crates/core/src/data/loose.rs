@@ -9,10 +9,9 @@ use crate::data::si_values::{instants_s, si_values};
 use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnUse, Columns, DataError, Dialect, ModelStart, Note,
-    ReadSettings, Sampling, SeriesError, Table, Thousands, TimeSeries, VelocityAxes, antenna,
-    clock, computed, corrections, degrees, doubts, impulse, steering,
+    ReadSettings, Sampling, Table, Thousands, TimeSeries, VelocityAxes, antenna, clock, computed,
+    corrections, degrees, doubts, impulse, slow_columns, steering,
 };
-use crate::ranges::TIME_STEP;
 
 /// Smallest number of rows of a time series.
 const MIN_ROWS: usize = 2;
@@ -266,7 +265,21 @@ fn load(
     kind: FileKind,
     map: Option<&ColumnMap>,
 ) -> Result<Loaded, DataError> {
-    load_columns(table, columns, kind, map).map_err(|error| table.placed(error))
+    let settings = map.map(|map| (*map.settings).clone()).unwrap_or_default();
+    let read = match load_columns(table, columns.clone(), kind, map) {
+        Err(error) if error.is_of_blank_cell() => {
+            match slow_columns::filled(table, &columns.by_channel, &settings) {
+                Some((filled, note)) => {
+                    let mut columns = columns;
+                    columns.notes.push(note);
+                    load_columns(&filled, columns, kind, map)
+                }
+                None => Err(error),
+            }
+        }
+        read => read,
+    };
+    read.map_err(|error| table.placed(error))
 }
 
 fn load_columns(
@@ -302,8 +315,8 @@ fn load_columns(
             goes_on = note;
             clock::second_record(table, column, &time_s).map_or(Ok(()), Err)?;
             let time = TimeSeries::new(time_s);
-            series = time.map_err(|error| out_of_order(table, column, error))?;
-            check_steps(table, column, series.time_s())?;
+            series = time.map_err(|error| clock::out_of_order(table, column, error))?;
+            clock::check_steps(table, column, series.time_s())?;
             continue;
         }
         let values = si_values(table, column, series.time_s(), &settings);
@@ -470,31 +483,4 @@ fn check_numbers(
         text,
         maps: Box::new(maps),
     })
-}
-
-/// Checks the time between the samples.
-fn check_steps(table: &Table, column: &ColumnUse, time_s: &[f64]) -> Result<(), DataError> {
-    for (row_idx, pair) in time_s.windows(2).enumerate() {
-        TIME_STEP.check(pair[1] - pair[0]).map_err(|step| DataError::TimeStep {
-            path: table.path().to_owned(),
-            line: table.line(row_idx + 1),
-            column: column.number,
-            step,
-        })?;
-    }
-    Ok(())
-}
-
-fn out_of_order(table: &Table, time: &ColumnUse, error: SeriesError) -> DataError {
-    let path = table.path().to_owned();
-    match error {
-        SeriesError::TimeOrder { sample_idx, before, after } => DataError::TimeOrder {
-            path,
-            line: table.line(sample_idx),
-            column: time.number,
-            before_s: before,
-            after_s: after,
-        },
-        source => DataError::Series { path, source },
-    }
 }

@@ -60,6 +60,7 @@ mod refused;
 mod rows;
 mod series;
 mod si_values;
+mod slow_columns;
 mod spelling;
 mod stated_side;
 mod steering;

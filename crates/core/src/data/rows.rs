@@ -3,6 +3,7 @@
 //! otherwise take a hundred times the memory of its file.
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::Path;
 
 use csv::{Reader, ReaderBuilder, StringRecord};
@@ -79,6 +80,11 @@ impl Rows {
 
     pub(super) fn len(&self) -> usize {
         self.starts.len()
+    }
+
+    /// Leaves out all rows but these.
+    pub(super) fn keep(&mut self, rows: Range<usize>) {
+        self.starts = self.starts.get(rows).unwrap_or_default().to_vec();
     }
 
     /// Line of a row in the file, counted from 1; 0 if there is no such row.

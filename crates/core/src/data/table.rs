@@ -2,6 +2,8 @@
 //! from which each row comes.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
@@ -42,6 +44,8 @@ pub struct Table {
     is_ambiguous: bool,
     header: Header,
     rows: Rows,
+    /// Numbers of columns that count before those of their cells, one in each row.
+    numbers: BTreeMap<usize, Vec<f64>>,
     /// The numbers and the beginnings of the first lines.
     beginning: Vec<(u64, String)>,
     /// The sheet of a workbook.
@@ -150,9 +154,19 @@ impl Table {
         let (dialect, is_ambiguous) =
             Dialect::with_marks(separator, rows.marks(), is_converted, settings);
         let (path, sheet, said) = (path.to_owned(), None, None);
-        let table =
-            Self { path, encoding, dialect, is_ambiguous, header, rows, beginning, sheet, said };
-        Ok(table)
+        let numbers = BTreeMap::new();
+        Ok(Self {
+            path,
+            encoding,
+            dialect,
+            is_ambiguous,
+            header,
+            rows,
+            numbers,
+            beginning,
+            sheet,
+            said,
+        })
     }
 
     /// Path of the file.
@@ -315,7 +329,23 @@ impl Table {
 
     /// The number in a cell; `None` if the cell does not hold a finite number.
     pub fn number(&self, row_idx: usize, column_idx: usize) -> Option<f64> {
-        self.dialect.number(&self.cell(row_idx, column_idx))
+        match self.numbers.get(&column_idx) {
+            Some(numbers) => numbers.get(row_idx).copied(),
+            None => self.dialect.number(&self.cell(row_idx, column_idx)),
+        }
+    }
+
+    /// Some rows of the table, with other numbers in some columns.
+    ///
+    /// - `numbers`: by the index of the column, one in each of these rows.
+    pub(super) fn with_numbers(
+        &self,
+        numbers: BTreeMap<usize, Vec<f64>>,
+        rows: Range<usize>,
+    ) -> Self {
+        let mut table = Self { numbers, ..self.clone() };
+        table.rows.keep(rows);
+        table
     }
 
     /// Row and column of the first number that may mean two things, where nothing in the table says which.
