@@ -8,7 +8,7 @@ use crate::data::si_values::compass_quantity;
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Formula, Note, RESTRICTIONS_COLUMN,
-    RecordedSide, SignedColumn, Table, clock, computed, letters, stated_side,
+    RecordedSide, SignedColumn, Table, computed, letters, stated_side, time_columns,
 };
 use crate::units::{Quantity, Unit};
 
@@ -184,11 +184,16 @@ impl Columns {
                 _ => ignored.push((number, name)),
             }
         }
+        let has_time = found.contains_key(&Channel::Time);
         if !is_mapped(Channel::Time)
-            && let Some(time) = clock::two_columns(table)
+            && let Some((time, note)) = time_columns::found(table, has_time)
         {
             let is_part = |number| time.terms.iter().any(|term| term.number == number);
             ignored.retain(|(number, _)| !is_part(*number));
+            let is_read =
+                |note: &Note| matches!(note, Note::WrongUnit { number, .. } if is_part(*number));
+            self.notes.retain(|note| !is_read(note));
+            self.notes.extend(note);
             found.insert(Channel::Time, vec![time]);
         }
         for column in computed::columns(table) {

@@ -66,6 +66,7 @@ mod stated_side;
 mod steering;
 mod table;
 mod text;
+mod time_columns;
 mod time_of_day;
 mod toml_file;
 mod toml_table;
