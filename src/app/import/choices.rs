@@ -40,6 +40,9 @@ pub(super) struct Choices {
 /// x to the east and y to the north.
 const PLACES: [(Channel, Formula); 2] = [(Channel::X, Formula::East), (Channel::Y, Formula::North)];
 
+/// What a yaw angle is computed from; of several the last one counts.
+const YAWS: [Formula; 2] = [Formula::Course, Formula::Quaternion];
+
 impl ColumnChoice {
     fn new(proposal: ColumnProposal) -> Self {
         Self { proposal, held: None, unit: None, is_negated: false }
@@ -112,7 +115,8 @@ impl Choices {
                 FormulaPart::QuaternionW
                 | FormulaPart::QuaternionX
                 | FormulaPart::QuaternionY
-                | FormulaPart::QuaternionZ => has_yaw,
+                | FormulaPart::QuaternionZ
+                | FormulaPart::Course => has_yaw,
             };
             if is_known {
                 column.held = None;
@@ -204,7 +208,7 @@ impl Choices {
     /// The channels that are computed from the columns that are chosen, with the numbers of these or what is
     /// open about them.
     fn computed(&self) -> Vec<(Channel, Formula, Result<Vec<usize>, String>)> {
-        let computed = self.places.into_iter().chain([(Channel::Yaw, Formula::Quaternion)]);
+        let computed = self.places.into_iter().chain(YAWS.map(|formula| (Channel::Yaw, formula)));
         let found = computed
             .filter_map(|(channel, formula)| Some((channel, formula, self.columns_of(formula)?)));
         found.collect()
@@ -327,5 +331,6 @@ fn part_name(part: FormulaPart) -> &'static str {
         FormulaPart::QuaternionX => "x of the quaternion",
         FormulaPart::QuaternionY => "y of the quaternion",
         FormulaPart::QuaternionZ => "z of the quaternion",
+        FormulaPart::Course => "course",
     }
 }

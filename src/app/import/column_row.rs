@@ -8,7 +8,7 @@ use impactlab_core::units::Quantity;
 use impactlab_draw::theme;
 
 /// What can be assigned to a column, in the order of the dialog's lists, with what it is.
-const CHOICES: [(Held, &str); 23] = [
+const CHOICES: [(Held, &str); 24] = [
     (Held::Channel(Channel::Time), "Time"),
     (Held::Channel(Channel::Fx), "F_x, force along the road"),
     (Held::Channel(Channel::Fy), "F_y, force to the left of the road"),
@@ -32,6 +32,7 @@ const CHOICES: [(Held, &str); 23] = [
     (Held::Part(FormulaPart::QuaternionX), "Quaternion x"),
     (Held::Part(FormulaPart::QuaternionY), "Quaternion y"),
     (Held::Part(FormulaPart::QuaternionZ), "Quaternion z"),
+    (Held::Part(FormulaPart::Course), "Course, degrees clockwise from north"),
 ];
 
 /// Text of a unit that nobody has said.
@@ -108,5 +109,6 @@ fn label(held: Held) -> &'static str {
         Held::Part(FormulaPart::QuaternionX) => "Quaternion x",
         Held::Part(FormulaPart::QuaternionY) => "Quaternion y",
         Held::Part(FormulaPart::QuaternionZ) => "Quaternion z",
+        Held::Part(FormulaPart::Course) => "Course",
     }
 }

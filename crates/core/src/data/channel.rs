@@ -71,9 +71,9 @@ channels! {
     /// Time.
     Time: "time_s", Time, "Time", ["time", "t", "zeit", "temps", "tiempo"];
     /// Position of the centre of gravity along the road, world axes.
-    X: "x_m", Length, "X", ["x", "xpos", "posx", "positionx", "xposition", "xm", "xworld", "easting", "xg", "wegx"];
+    X: "x_m", Length, "X", ["x", "xpos", "posx", "positionx", "xposition", "xm", "xworld", "easting", "east", "rechtswert", "xg", "wegx"];
     /// Position of the centre of gravity to the left of the road, world axes.
-    Y: "y_m", Length, "Y", ["y", "ypos", "posy", "positiony", "yposition", "ym", "yworld", "northing", "yg", "wegy"];
+    Y: "y_m", Length, "Y", ["y", "ypos", "posy", "positiony", "yposition", "ym", "yworld", "northing", "north", "hochwert", "yg", "wegy"];
     /// Yaw angle ψ of the vehicle, counter-clockwise positive.
     Yaw: "yaw_rad", Angle, "Yaw ψ", ["yaw", "yawangle", "psi", "heading", "headingangle", "gierwinkel"];
     /// Roll angle φ about the forward axis.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::data::columns::{ColumnUse, Term, column_use, stated_unit};
 use crate::data::error::quoted;
+use crate::data::formats::OF_COURSE;
 use crate::data::spelling::letters_and_digits;
 use crate::data::{Channel, DataError, Formula, Note, Table};
 use crate::units::Quantity;
@@ -19,6 +20,10 @@ const QUATERNIONS: [[&str; 4]; 4] = [
     ["quaternionw", "quaternionx", "quaterniony", "quaternionz"],
     ["orientationw", "orientationx", "orientationy", "orientationz"],
 ];
+
+/// Headers of a course over ground, which is clockwise from north.
+const COURSES: [&str; 7] =
+    ["course", "courseoverground", "cog", "gpscourse", "trackangle", "kurs", "kursübergrund"];
 
 /// Ends of headers of a ROS message with a pose, in SI units (REP 103) unless they say others, with their
 /// channels; those of a twist are of `nav_msgs/Odometry`, whose twist is in the axes of the vehicle.
@@ -63,8 +68,28 @@ pub(super) fn columns(table: &Table) -> Vec<ColumnUse> {
             plain_column(table, channel, number)
         });
         found.extend(of_message);
+    } else if let Some(number) = keys.iter().position(|key| COURSES.contains(&key.as_str()))
+        && is_in_degrees(table, number)
+    {
+        found.push(column(table, Channel::Yaw, Formula::Course, &[number + 1]));
     }
     found
+}
+
+/// Whether a column is in degrees or names no unit.
+fn is_in_degrees(table: &Table, idx: usize) -> bool {
+    let name = table.header().get(idx).map_or("", String::as_str);
+    let stated = stated_unit(name, table.unit_text(idx), Quantity::Angle);
+    stated.is_ok_and(|unit| unit.is_none_or(|unit| unit.symbol == "deg"))
+}
+
+/// Says that the yaw angle is a course over ground.
+fn course_note(columns: &BTreeMap<Channel, ColumnUse>) -> Option<Note> {
+    let yaw = columns.get(&Channel::Yaw)?;
+    let is_course = yaw.formula == Some(Formula::Course);
+    is_course.then(|| Note::Doubt {
+        text: format!("column {}, clockwise from north: {OF_COURSE}", yaw.number),
+    })
 }
 
 /// The letters of a header without its unit.
@@ -109,8 +134,16 @@ fn plain_column(table: &Table, channel: Channel, number: usize) -> Option<Column
     Some(column_use(channel, number, name.clone(), Some(unit)))
 }
 
+/// What is said of channels that are computed.
+pub(super) fn notes(
+    table: &Table,
+    columns: &BTreeMap<Channel, ColumnUse>,
+) -> impl Iterator<Item = Note> {
+    places_note(table, columns).into_iter().chain(course_note(columns))
+}
+
 /// Says from where positions are counted that follow from latitude and longitude.
-pub(super) fn note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Option<Note> {
+fn places_note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Option<Note> {
     let is_place = |channel: &Channel| {
         let formula = columns.get(channel)?.formula?;
         matches!(formula, Formula::East | Formula::North).then_some(&columns[channel].terms)
@@ -163,14 +196,48 @@ pub(super) fn check_places(
 /// Whether a formula gives this channel.
 pub(super) fn is_of(formula: Formula, channel: Channel) -> bool {
     match formula {
-        Formula::Quaternion => channel == Channel::Yaw,
+        Formula::Quaternion | Formula::Course => channel == Channel::Yaw,
         Formula::East | Formula::North => matches!(channel, Channel::X | Channel::Y),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::data::read_any_series;
+    use crate::data::{Channel, ColumnMap, read_any_series};
+
+    /// A car that turns from north over west: a course counts clockwise from north, a yaw angle from the east.
+    #[test]
+    fn a_course_becomes_a_yaw_angle() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let row = |i: u32| {
+            let turned = 0.02 * f64::from(i);
+            let [east, north] = [100.0 * (turned.cos() - 1.0), 100.0 * turned.sin()];
+            let course_deg = (360.0 - turned.to_degrees()).rem_euclid(360.0);
+            format!("{},{east},{north},{course_deg},20\n", 0.1 * f64::from(i))
+        };
+        let rows: String = (0..50).map(row).collect();
+        std::fs::write(
+            &path,
+            format!("Time [s],East [m],North [m],Course [°],Speed [m/s]\n{rows}"),
+        )
+        .unwrap();
+        let loaded = read_any_series(&path, None).unwrap();
+        let yaw = loaded.series.get(Channel::Yaw).unwrap();
+        for (i, yaw_rad) in yaw.iter().enumerate() {
+            let turned = yaw_rad - yaw[0];
+            assert!((turned - 0.02 * i as f64).abs() < 1e-9, "{i}: {turned}");
+        }
+        let at_start = yaw[0].rem_euclid(std::f64::consts::TAU);
+        assert!((at_start - std::f64::consts::FRAC_PI_2).abs() < 1e-9, "{at_start}");
+        assert!(loaded.check_consistent(&path).is_ok(), "{:?}", loaded.notes);
+        let is_told =
+            loaded.notes.iter().any(|note| note.to_string().contains("course over ground"));
+        assert!(is_told, "{:?}", loaded.notes);
+        let map: ColumnMap = "yaw=course(4),headings=compass".parse().unwrap();
+        let mapped = read_any_series(&path, Some(&map)).unwrap();
+        assert_eq!(mapped.series.get(Channel::Yaw), loaded.series.get(Channel::Yaw));
+    }
 
     #[test]
     fn places_to_the_west_without_a_minus_and_radians_are_refused() {

@@ -1,13 +1,21 @@
-//! Channels that follow from several columns: the yaw angle of a quaternion, and places in metres from
-//! latitude and longitude.
+//! Channels that follow from several columns or from one that counts in another way: the yaw angle of a quaternion or of
+//! a course, and places in metres from latitude and longitude.
+
+use std::f64::consts::FRAC_PI_2;
 
 use crate::data::GeographicPlace;
+
+/// Courses that are read, degrees: those of a receiver lie between 0 and 360, and may be counted on over north.
+const COURSES_DEG: std::ops::RangeInclusive<f64> = -36_000.0..=36_000.0;
 
 /// What is computed from several columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Formula {
     /// The yaw angle of a unit quaternion, `quaternion(w x y z)`.
     Quaternion,
+    /// The yaw angle of a course over ground in degrees clockwise from north, over a path with x to the east:
+    /// `course(column)`.
+    Course,
     /// The way to the east of the first row, m, from degrees: `east(latitude longitude)`.
     East,
     /// The way to the north of the first row, m, from degrees: `north(latitude longitude)`.
@@ -29,18 +37,21 @@ pub enum FormulaPart {
     QuaternionY,
     /// Its part along z.
     QuaternionZ,
+    /// The course over ground, degrees clockwise from north.
+    Course,
 }
 
 /// Deviation of the length of a quaternion from 1 from which it is none.
 const UNIT_LENGTH: f64 = 0.05;
 
 impl Formula {
-    pub(super) const ALL: [Self; 3] = [Self::Quaternion, Self::East, Self::North];
+    pub(super) const ALL: [Self; 4] = [Self::Quaternion, Self::Course, Self::East, Self::North];
 
     /// Its name in the text of a map.
     pub fn name(self) -> &'static str {
         match self {
             Self::Quaternion => "quaternion",
+            Self::Course => "course",
             Self::East => "east",
             Self::North => "north",
         }
@@ -49,10 +60,11 @@ impl Formula {
     /// What the columns hold from which it is computed, in their order.
     pub fn parts(self) -> &'static [FormulaPart] {
         use FormulaPart::{
-            Latitude, Longitude, QuaternionW, QuaternionX, QuaternionY, QuaternionZ,
+            Course, Latitude, Longitude, QuaternionW, QuaternionX, QuaternionY, QuaternionZ,
         };
         match self {
             Self::Quaternion => &[QuaternionW, QuaternionX, QuaternionY, QuaternionZ],
+            Self::Course => &[Course],
             Self::East | Self::North => &[Latitude, Longitude],
         }
     }
@@ -66,6 +78,7 @@ impl Formula {
     pub(super) fn expected(self) -> &'static str {
         match self {
             Self::Quaternion => "the columns w, x, y and z of a quaternion of length 1",
+            Self::Course => "a course in degrees clockwise from north",
             Self::East | Self::North => {
                 "a latitude from −90° to 90° and a longitude from −180° to 180°, in degrees"
             }
@@ -81,6 +94,13 @@ impl Formula {
             (Self::Quaternion, [w, x, y, z]) => {
                 let rows = w.iter().zip(x).zip(y).zip(z).enumerate();
                 rows.map(|(row, (((w, x), y), z))| yaw_rad([*w, *x, *y, *z]).ok_or(row)).collect()
+            }
+            (Self::Course, [course]) => {
+                let yaw = |(row, deg): (usize, &f64)| {
+                    let is_course = COURSES_DEG.contains(deg);
+                    is_course.then(|| FRAC_PI_2 - deg.to_radians()).ok_or(row)
+                };
+                course.iter().enumerate().map(yaw).collect()
             }
             (Self::East | Self::North, [latitude, longitude]) => {
                 let places = latitude

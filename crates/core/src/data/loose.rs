@@ -351,7 +351,7 @@ fn load_columns(
     let is_shifted = settings.time_shift_s.is_some();
     let begins_s = clock::offered_shift_s(&series).filter(|_| !is_shifted);
     notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
-    notes.extend(computed::note(table, &by_channel));
+    notes.extend(computed::notes(table, &by_channel));
     notes.extend(found);
     notes.extend(doubts::of_numbers(table, &by_channel, &series, map));
     // What is checked above is what the receiver has measured.

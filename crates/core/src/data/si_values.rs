@@ -54,7 +54,10 @@ pub(super) fn si_values(
     let mut values = sum.unwrap_or_else(|| vec![0.0; table.n_rows()]);
     let shift_s = settings.time_shift_s.filter(|_| column.channel == Channel::Time);
     let is_mirrored = settings.y_to_right && changes_sign_with_y(column.channel);
-    let compass = compass_quantity(column.channel).filter(|_| settings.compass_headings);
+    // A course is turned by its formula.
+    let is_course = column.formula == Some(Formula::Course);
+    let compass = compass_quantity(column.channel);
+    let compass = compass.filter(|_| settings.compass_headings && !is_course);
     let is_heading = compass_quantity(column.channel) == Some(Quantity::Angle);
     let offset_rad = settings.yaw_offset_rad.filter(|_| is_heading).unwrap_or(0.0);
     let range = samples_range(column.channel);

@@ -9,9 +9,9 @@ use std::ops::Range;
 
 use crate::data::error::quoted;
 use crate::data::si_values::{compass_quantity, instants_s};
-use crate::data::{Channel, ColumnUse, Note, ReadSettings, Table};
+use crate::data::{Channel, ColumnUse, Formula, Note, ReadSettings, Table};
 use crate::numerics::{counted_turns_rad, quantile_of_sorted};
-use crate::units::{Quantity, Unit, three_digits};
+use crate::units::{Quantity, three_digits};
 
 /// Longest time between two values of a column, in steps that are usual there, and least number of its values.
 const LONGEST_STEP: f64 = 2.5;
@@ -27,6 +27,8 @@ struct Slow {
     own: Vec<(usize, f64)>,
     /// Usual time between two of them, s.
     step_s: f64,
+    /// Of a heading, which goes on over whole turns: its unit.
+    rad_per_number: Option<f64>,
 }
 
 /// The table with every blank cell of slower columns filled, from the first to the last row that all of them reach, and
@@ -38,31 +40,35 @@ pub(super) fn filled(
 ) -> Option<(Table, Note)> {
     let time = columns.get(&Channel::Time)?;
     let (time_s, _) = instants_s(table, time, settings).ok()?;
-    let mut found: Vec<(Slow, Option<Unit>)> = Vec::new();
+    let mut found: Vec<Slow> = Vec::new();
     for column in columns.values().filter(|column| column.channel != Channel::Time) {
         for term in &column.terms {
             let column_idx = term.number.checked_sub(1)?;
             let own = own_numbers(table, column_idx)?;
-            let is_known = found.iter().any(|(slow, _)| slow.column_idx == column_idx);
+            let is_known = found.iter().any(|slow| slow.column_idx == column_idx);
             if own.len() == table.n_rows() || is_known {
                 continue;
             }
             let step_s = usual_step_s(&own, &time_s).filter(|_| is_of_motion(column))?;
             let is_heading = compass_quantity(column.channel) == Some(Quantity::Angle);
-            let heading = (is_heading && column.formula.is_none()).then_some(term.unit);
-            found.push((Slow { column_idx, own, step_s }, heading));
+            let rad_per_number = match column.formula {
+                None => Some(term.unit.si_per_unit),
+                Some(Formula::Course) => Some(1_f64.to_radians()),
+                Some(_) => None,
+            };
+            let rad_per_number = rad_per_number.filter(|_| is_heading);
+            found.push(Slow { column_idx, own, step_s, rad_per_number });
         }
     }
-    let first = found.iter().filter_map(|(slow, _)| slow.own.first()).map(|(row, _)| *row).max()?;
-    let last = found.iter().filter_map(|(slow, _)| slow.own.last()).map(|(row, _)| *row).min()?;
+    let first = found.iter().filter_map(|slow| slow.own.first()).map(|(row, _)| *row).max()?;
+    let last = found.iter().filter_map(|slow| slow.own.last()).map(|(row, _)| *row).min()?;
     let rows = first..last + 1;
     if rows.len() < LEAST_VALUES {
         return None;
     }
     let note = note(table, &found, &rows);
-    let numbers = found.iter().map(|(slow, heading)| {
-        (slow.column_idx, slow.interpolated(&time_s, *heading, rows.clone()))
-    });
+    let numbers =
+        found.iter().map(|slow| (slow.column_idx, slow.interpolated(&time_s, rows.clone())));
     Some((table.with_numbers(numbers.collect(), rows.clone()), note))
 }
 
@@ -113,13 +119,12 @@ fn usual_step_s(own: &[(usize, f64)], time_s: &[f64]) -> Option<f64> {
 
 impl Slow {
     /// The numbers in rows of the table, linear over the time between those of the column.
-    ///
-    /// - `heading`: unit of a heading, which goes on over whole turns.
-    fn interpolated(&self, time_s: &[f64], heading: Option<Unit>, rows: Range<usize>) -> Vec<f64> {
+    fn interpolated(&self, time_s: &[f64], rows: Range<usize>) -> Vec<f64> {
         let mut values: Vec<f64> = self.own.iter().map(|(_, number)| *number).collect();
-        if let Some(unit) = heading {
-            let angles_rad = values.iter().map(|value| unit.to_si(*value)).collect();
-            values = counted_turns_rad(angles_rad).iter().map(|rad| unit.from_si(*rad)).collect();
+        if let Some(rad) = self.rad_per_number {
+            let angles_rad = values.iter().map(|value| value * rad).collect();
+            values =
+                counted_turns_rad(angles_rad).iter().map(|angle_rad| angle_rad / rad).collect();
         }
         let at_s = |row: usize| time_s.get(row).copied().unwrap_or(f64::NAN);
         let value_at = |row: usize| {
@@ -139,13 +144,12 @@ impl Slow {
 }
 
 /// What is said of the columns and of the rows that are left out.
-fn note(table: &Table, found: &[(Slow, Option<Unit>)], rows: &Range<usize>) -> Note {
+fn note(table: &Table, found: &[Slow], rows: &Range<usize>) -> Note {
     let name = |slow: &Slow| {
         let name = table.header().get(slow.column_idx).map_or("", String::as_str);
         format!("{} {} (every {} s)", slow.column_idx + 1, quoted(name), three_digits(slow.step_s))
     };
-    let mut names: Vec<String> =
-        found.iter().take(MOST_NAMED).map(|(slow, _)| name(slow)).collect();
+    let mut names: Vec<String> = found.iter().take(MOST_NAMED).map(name).collect();
     if found.len() > MOST_NAMED {
         names.push(format!("{} more", found.len() - MOST_NAMED));
     }
