@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::data::columns::{ColumnUse, Term, column_use, stated_unit};
+use crate::data::degree_text::{LATITUDE_LETTERS, LONGITUDE_LETTERS, place_deg};
 use crate::data::error::quoted;
 use crate::data::formats::OF_COURSE;
 use crate::data::spelling::letters_and_digits;
@@ -10,8 +11,8 @@ use crate::data::{Channel, DataError, Formula, Note, Table};
 use crate::units::Quantity;
 
 /// Headers of latitude and longitude.
-const LATITUDE: [&str; 3] = ["latitude", "lat", "gpslat"];
-const LONGITUDE: [&str; 5] = ["longitude", "lon", "long", "lng", "gpslon"];
+const LATITUDE: [&str; 4] = ["latitude", "lat", "gpslat", "breitengrad"];
+const LONGITUDE: [&str; 6] = ["longitude", "lon", "long", "lng", "gpslon", "längengrad"];
 
 /// Headers of the four numbers of a quaternion, w first.
 const QUATERNIONS: [[&str; 4]; 4] = [
@@ -152,8 +153,9 @@ fn places_note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Option<
     else {
         return None;
     };
-    let number = |term: Term| table.number(0, term.number.checked_sub(1)?);
-    Some(Note::Places { origin_deg: [number(latitude)?, number(longitude)?] })
+    let degrees = |term: Term, letters| place_deg(table, 0, term.number.checked_sub(1)?, letters);
+    let latitude_deg = degrees(latitude, LATITUDE_LETTERS)?;
+    Some(Note::Places { origin_deg: [latitude_deg, degrees(longitude, LONGITUDE_LETTERS)?] })
 }
 
 /// Refuses places whose latitude or longitude is no number of degrees to the north and to the east: one in another
@@ -169,7 +171,8 @@ pub(super) fn check_places(
         |column: &&ColumnUse| matches!(column.formula, Some(Formula::East | Formula::North));
     let Some(place) = columns.values().find(is_place) else { return Ok(()) };
     let letter = |row_idx: usize, idx: usize| table.cell(row_idx, idx).trim().to_lowercase();
-    for (term, [word, short]) in place.terms.iter().zip([["south", "s"], ["west", "w"]]) {
+    let negative = [(["south", "s"], LATITUDE_LETTERS), (["west", "w"], LONGITUDE_LETTERS)];
+    for (term, ([word, short], letters)) in place.terms.iter().zip(negative) {
         let Some(idx) = term.number.checked_sub(1) else { continue };
         let Some(name) = table.header().get(idx) else { continue };
         let stated = stated_unit(name, table.unit_text(idx), Quantity::Angle);
@@ -178,7 +181,8 @@ pub(super) fn check_places(
         let mut words = lower.split(|c: char| !c.is_alphanumeric());
         let is_named = lower.contains(word) || words.any(|of| of == short);
         let is_lettered = |row_idx: usize| letter(row_idx, idx + 1) == short;
-        let is_positive = |row_idx: usize| table.number(row_idx, idx).is_some_and(|of| of > 0.0);
+        let is_positive =
+            |row_idx: usize| place_deg(table, row_idx, idx, letters).is_some_and(|of| of > 0.0);
         let is_turned = |row_idx: usize| (is_named || is_lettered(row_idx)) && is_positive(row_idx);
         if is_other_unit || (0..table.n_rows()).any(is_turned) {
             let what = format!(

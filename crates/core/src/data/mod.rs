@@ -28,6 +28,7 @@ mod correction;
 mod corrections;
 mod course;
 mod dataset;
+mod degree_text;
 mod degrees;
 mod dialect;
 mod doubts;

@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use crate::data::degree_text::{LATITUDE_LETTERS, LONGITUDE_LETTERS, places_deg};
 use crate::data::time_of_day::times_of_day_s;
 use crate::data::{
     Channel, ColumnUse, DataError, Formula, Note, ReadSettings, Table, Term, clock, impulse,
@@ -194,8 +195,16 @@ fn computed_values(
     column: &ColumnUse,
     formula: Formula,
 ) -> Result<Vec<f64>, DataError> {
-    let numbers = |term: &Term| table.numbers(term.number.saturating_sub(1), "");
-    let terms: Vec<Vec<f64>> = column.terms.iter().map(numbers).collect::<Result<_, _>>()?;
+    let numbers = |(at, term): (usize, &Term)| {
+        let idx = term.number.saturating_sub(1);
+        match (formula, at) {
+            (Formula::East | Formula::North, 0) => places_deg(table, idx, LATITUDE_LETTERS),
+            (Formula::East | Formula::North, _) => places_deg(table, idx, LONGITUDE_LETTERS),
+            _ => table.numbers(idx, ""),
+        }
+    };
+    let terms = column.terms.iter().enumerate().map(numbers);
+    let terms: Vec<Vec<f64>> = terms.collect::<Result<_, _>>()?;
     let idx = column.number.saturating_sub(1);
     formula.values(&terms).map_err(|row_idx| table.cell_error(row_idx, idx, formula.expected()))
 }
