@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 use rand::RngExt as _;
 
 use crate::evidence::Stated;
+use crate::hand::field::POINTS;
 use crate::hand::values::HandValues;
 use crate::hand::{HandDefault, HandField, HandMethod, HandOutput};
 use impactlab_core::numerics::{normal_cdf, normal_quantile, quantile_of_sorted, random_stream};
@@ -153,6 +154,16 @@ pub enum HandError {
         /// Why.
         why: &'static str,
     },
+    /// An input that has no meaning without another one.
+    #[error("{method}: {key} has no meaning without {needs}; give both, or leave it out")]
+    Alone {
+        /// The method.
+        method: String,
+        /// The input.
+        key: String,
+        /// The other one.
+        needs: String,
+    },
     /// Nothing follows from the inputs, or from too much of what they may be.
     #[error(
         "{method}: nothing follows from these numbers in {share:.0} % of the draws; they do not go together, or \
@@ -181,8 +192,11 @@ impl HandQuestion<'_> {
         }
         self.check_points()?;
         let mut numbers = Vec::new();
-        for field in fields.iter().filter(|field| self.applies(field)) {
-            numbers.extend(self.number(field)?);
+        for field in fields {
+            match field.needs.filter(|other| !self.has(other)) {
+                None => numbers.extend(self.number(field)?),
+                Some(other) => self.check_left_out(field, other)?,
+            }
         }
         let values = self.table(&numbers);
         match (self.method.formula().refuse)(&self.values(&values, self.points_m)) {
@@ -191,16 +205,33 @@ impl HandQuestion<'_> {
         }
     }
 
-    /// Whether an input has a meaning: the error of points has none without any.
-    fn applies(&self, field: &HandField) -> bool {
-        field.key != POINT_ERROR || !self.points_m.is_empty()
+    /// Whether points of a mark, or the value of another input, are given.
+    fn has(&self, key: &str) -> bool {
+        let field = self.method.fields().iter().find(|field| field.key == key);
+        let stated = field.and_then(|field| self.inputs.get(&field.si_key()));
+        if key == POINTS {
+            !self.points_m.is_empty()
+        } else {
+            stated.is_some_and(|of| of.value.is_some())
+        }
+    }
+
+    /// Refuses an input that has no meaning, since another one is missing.
+    fn check_left_out(&self, field: &HandField, other: &str) -> Result<(), HandError> {
+        let key = field.si_key();
+        if self.inputs.get(&key).is_none_or(|stated| *stated == Stated::default()) {
+            return Ok(());
+        }
+        let other = self.method.fields().iter().find(|field| field.key == other);
+        let needs = other.map_or_else(|| POINTS.to_owned(), HandField::si_key);
+        Err(HandError::Alone { method: self.method.word(), key, needs })
     }
 
     /// The inputs of the method with their units, in words.
     fn known(&self) -> String {
         let mut names: Vec<String> = self.method.fields().iter().map(HandField::si_key).collect();
         if self.method.takes_points() {
-            names.push("points_m".to_owned());
+            names.push(POINTS.to_owned());
         }
         names.join(", ")
     }
@@ -213,7 +244,7 @@ impl HandQuestion<'_> {
         if n > MOST_POINTS {
             return Err(HandError::Points { n, expected: "at most 500" });
         }
-        let key = || "points_m".to_owned();
+        let key = || POINTS.to_owned();
         self.points_m.iter().flatten().try_for_each(|coordinate| {
             let checked = HAND_COORDINATE.check(*coordinate);
             checked.map(|_| ()).map_err(|source| HandError::OutOfRange { key: key(), source })
@@ -227,8 +258,8 @@ impl HandQuestion<'_> {
         let (value, is_value_assumed) = match (stated.value, field.default) {
             (Some(value), _) => (value, false),
             (None, HandDefault::Value(value)) => (value, true),
-            (None, HandDefault::Open) => return Ok(None),
-            (None, HandDefault::Required) => {
+            (None, HandDefault::Open) if stated.sigma.is_none() => return Ok(None),
+            (None, HandDefault::Open | HandDefault::Required) => {
                 let missing = format!("{} ({key})", field.label);
                 let (method, known) = (self.method.word(), self.known());
                 return Err(HandError::Missing { method, missing, known });
@@ -364,7 +395,7 @@ impl HandQuestion<'_> {
             }
         }
         let changes = squares.into_iter().map(|sum| sum.map(f64::sqrt)).collect();
-        let (input, label) = ("points_m".to_owned(), "points of the mark");
+        let (input, label) = (POINTS.to_owned(), "points of the mark");
         Some(HandSensitivity { input, label, step, is_exact: false, changes })
     }
 

@@ -146,6 +146,45 @@ fn inputs_that_are_wrong_are_named() {
     }
 }
 
+/// Restitution and effective masses were read beside one vehicle and changed nothing, as did the error of the
+/// points of a mark without points and a standard deviation without its value.
+#[test]
+fn an_input_without_the_other_that_gives_it_a_meaning_is_refused() {
+    let ask = |method: HandMethod, inputs: &HandInputs| {
+        let question = HandQuestion { method, inputs, points_m: &[] };
+        question.numbers().map(|numbers| numbers.len())
+    };
+    let crush = exact(&[
+        ("mass_1_kg", 1500.0),
+        ("stiffness_a_n_per_m", 5e4),
+        ("stiffness_b_n_per_m2", 6e5),
+        ("width_m", 1.5),
+        ("c1_m", 0.4),
+        ("c2_m", 0.3),
+    ]);
+    let yaw = exact(&[("friction", 0.7), ("radius_m", 50.0)]);
+    let lone_sigma = Stated { value: None, sigma: Some(3.0) };
+    for (method, inputs, key, number, part) in [
+        (HandMethod::CrushEnergy, &crush, "restitution", stated(0.3, 0.0), "without mass_2_kg"),
+        (HandMethod::CrushEnergy, &crush, "gamma_1", stated(0.8, 0.0), "without mass_2_kg"),
+        (HandMethod::CrushEnergy, &crush, "gamma_2", stated(0.8, 0.0), "without mass_2_kg"),
+        (HandMethod::CrushEnergy, &crush, "mass_2_kg", lone_sigma, "needs mass of vehicle 2"),
+        (HandMethod::YawMark, &yaw, "point_error_m", stated(0.1, 0.0), "without points_m"),
+    ] {
+        let n_alone = ask(method, inputs).unwrap();
+        let field = method.fields().iter().find(|field| field.si_key() == key).unwrap();
+        let mut more = inputs.clone();
+        more.insert(key.to_owned(), Stated::default());
+        assert_eq!(ask(method, &more), Ok(n_alone), "{key}: a field that is left empty");
+        more.insert(key.to_owned(), number);
+        let error = ask(method, &more).unwrap_err().to_string();
+        assert!(error.contains(part) && error.contains(&field.si_key()), "{key}: {error}");
+    }
+    let mut both = crush;
+    both.extend(exact(&[("mass_2_kg", 1200.0), ("energy_2_j", 5e4), ("restitution", 0.3)]));
+    assert!(ask(HandMethod::CrushEnergy, &both).is_ok());
+}
+
 /// What is asked and what is printed have each a key of their own, and a default that is possible.
 #[test]
 fn every_method_is_described() {

@@ -59,9 +59,15 @@ pub(super) const CRUSH_ENERGY: Formula = Formula {
             .or(0.0),
         HandField::relative("mass_2", "mass of vehicle 2", BODY_MASS, 0.03).open(),
         HandField::relative("energy_2", "crush energy of vehicle 2", HAND_ENERGY, 0.2).open(),
-        HandField::new("restitution", "restitution", HAND_RESTITUTION, 0.05).or(0.1),
-        HandField::new("gamma_1", "effective mass of vehicle 1", MASS_FACTOR, 0.05).or(1.0),
-        HandField::new("gamma_2", "effective mass of vehicle 2", MASS_FACTOR, 0.05).or(1.0),
+        HandField::new("restitution", "restitution", HAND_RESTITUTION, 0.05)
+            .or(0.1)
+            .only_with("mass_2"),
+        HandField::new("gamma_1", "effective mass of vehicle 1", MASS_FACTOR, 0.05)
+            .or(1.0)
+            .only_with("mass_2"),
+        HandField::new("gamma_2", "effective mass of vehicle 2", MASS_FACTOR, 0.05)
+            .or(1.0)
+            .only_with("mass_2"),
     ],
     outputs: &[
         HandOutput {

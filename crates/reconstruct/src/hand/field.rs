@@ -4,6 +4,9 @@ use impactlab_core::data::key_with_unit;
 use impactlab_core::ranges::Range;
 use impactlab_core::units::Quantity;
 
+/// Key of the points of a mark.
+pub(super) const POINTS: &str = "points_m";
+
 /// A number that a method takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HandField {
@@ -15,6 +18,8 @@ pub struct HandField {
     pub range: Range,
     /// What holds where nothing is entered.
     pub default: HandDefault,
+    /// Key of the input beside which alone it has a meaning.
+    pub(super) needs: Option<&'static str>,
     /// Standard deviation where none is stated.
     sigma: DefaultSigma,
 }
@@ -50,7 +55,7 @@ impl HandField {
         sigma: f64,
     ) -> Self {
         let sigma = DefaultSigma::Fixed(sigma);
-        Self { key, label, range, default: HandDefault::Required, sigma }
+        Self { key, label, range, default: HandDefault::Required, needs: None, sigma }
     }
 
     /// The same with a standard deviation that is a share of the value.
@@ -61,7 +66,7 @@ impl HandField {
         share: f64,
     ) -> Self {
         let sigma = DefaultSigma::Share(share);
-        Self { key, label, range, default: HandDefault::Required, sigma }
+        Self { key, label, range, default: HandDefault::Required, needs: None, sigma }
     }
 
     /// The same, which may be left out.
@@ -72,6 +77,13 @@ impl HandField {
     /// The same with a value where none is entered, SI.
     pub(super) const fn or(self, value: f64) -> Self {
         Self { default: HandDefault::Value(value), ..self }
+    }
+
+    /// The same, which has a meaning beside another input alone.
+    ///
+    /// - `key`: of the other one, or [`POINTS`].
+    pub(super) const fn only_with(self, key: &'static str) -> Self {
+        Self { needs: Some(key), ..self }
     }
 
     /// Its key in a question, with its SI unit.

@@ -17,6 +17,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::hand::HandField;
+use crate::hand::field::POINTS;
 use crate::hand::method::{Formula, HandOutput, violated};
 use crate::hand::values::HandValues;
 use impactlab_core::bibliography::{Brach2011, Davis2014, Richardson2012};
@@ -62,7 +63,8 @@ pub(super) const YAW_MARK: Formula = Formula {
             .or(MARK_TO_CG_M),
         HandField::new("formula", "factor of the formula", FORMULA_FACTOR, 0.06).or(1.0),
         HandField::new("point_error", "standard deviation of a point", POSITION_SIGMA, 0.0)
-            .or(0.05),
+            .or(0.05)
+            .only_with(POINTS),
     ],
     outputs: &[
         HandOutput {
