@@ -111,6 +111,12 @@ pub enum CliError {
         "the cases of a trajectory data set are simulated on the road of their vehicle; leave out --site"
     )]
     SiteOfDataset,
+    /// Drawn vehicles are asked for of a data set whose cases are simulated once each.
+    #[error(
+        "each case of a trajectory data set is simulated once, with the vehicle as it is; leave out \
+         --vehicle-draws"
+    )]
+    DrawsOfDataset,
     /// What happens to the wheels is said for a data set whose cases say it themselves.
     #[error(
         "the cases of a trajectory data set say themselves what happens to the wheels and how long \

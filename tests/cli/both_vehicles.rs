@@ -112,7 +112,7 @@ fn the_striking_vehicle_of_a_forecast_is_the_one_that_is_named() {
     assert_ne!(open["striking"], named["striking"], "its tires carry it elsewhere");
     let refused =
         impactlab(&["predict", "--dataset", "datasets/fea", "--case", "c001", "--bullet", "x"]);
-    assert!(refused.code != 0 && refused.err.contains("--scenario"), "{}", refused.err);
+    assert!(refused.code != 0 && refused.err.contains("cannot be used with"), "{}", refused.err);
 }
 
 #[test]

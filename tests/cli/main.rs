@@ -26,6 +26,7 @@ mod import_ground;
 mod inputs;
 mod kinds;
 mod log;
+mod lone_options;
 mod maps;
 mod motion;
 mod pairs;

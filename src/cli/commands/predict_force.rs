@@ -29,7 +29,7 @@ pub(in crate::cli) struct PredictForceArgs {
     #[arg(long, value_name = "DIR", requires = "case", conflicts_with = "scenario")]
     dataset: Option<PathBuf>,
     /// The case of the data set
-    #[arg(long, value_name = "NAME", requires = "dataset")]
+    #[arg(long, value_name = "NAME", requires = "dataset", conflicts_with = "scenario")]
     case: Option<String>,
     /// Kind of body of the striking vehicle, as the training data name it; left open if not given
     #[arg(long, value_name = "NAME")]

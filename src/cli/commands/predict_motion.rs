@@ -25,6 +25,10 @@ use impactlab_study::{
     PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateRequest,
 };
 
+/// Sources of another kind than a scenario. An option that requires one is not missed by clap where something
+/// else is given that excludes the scenario, so that what belongs to it has to exclude that as well.
+const NOT_OF_A_SCENARIO: [&str; 2] = ["dataset", "trajectory"];
+
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct PredictMotionArgs {
@@ -42,26 +46,27 @@ pub(in crate::cli) struct PredictMotionArgs {
     )]
     dataset: Option<PathBuf>,
     /// The case of the data set
-    #[arg(long, value_name = "NAME", requires = "dataset")]
+    #[arg(long, value_name = "NAME", requires = "dataset", conflicts_with_all = ["scenario", "trajectory"])]
     case: Option<String>,
     /// Instead: a recorded motion, whose own force is taken
     #[arg(long, value_name = "FILE.csv", requires = "out", conflicts_with_all = ["scenario", "dataset"])]
     trajectory: Option<PathBuf>,
     /// Which column of the recorded motion is what: time=1:ms,x=2:m,fx=Kraft X:kN
-    #[arg(long, value_name = "MAP", requires = "trajectory")]
+    #[arg(long, value_name = "MAP", requires = "trajectory", conflicts_with_all = ["scenario", "dataset"])]
     map: Option<ColumnMap>,
     /// The struck vehicle: a preset or a file; a data set has its own, else reference-2000. A scenario takes
     /// over its mass, yaw inertia and outline
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
     /// The striking vehicle, likewise, where it is followed
-    #[arg(id = "bullet", long = "bullet", value_name = "NAME|FILE", requires = "scenario")]
+    #[arg(id = "bullet", long = "bullet", value_name = "NAME|FILE", requires = "scenario",
+        conflicts_with_all = NOT_OF_A_SCENARIO)]
     striking: Option<VehicleArg>,
     /// A force history instead of the predicted one
     #[arg(long, value_name = "FORCE.csv")]
     force: Option<PathBuf>,
     /// Which column of the force file is what: time=1:ms,fx=Kraft X:kN
-    #[arg(long, value_name = "MAP", requires = "force")]
+    #[arg(long, value_name = "MAP", requires = "force", conflicts_with_all = ["given_force", "force_model"])]
     force_map: Option<ColumnMap>,
     /// Of a scenario, instead of the predicted force a classic pulse that carries the impulse of the
     /// momentum solution; that of a case is its own unless --force-model is given
@@ -70,7 +75,7 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// With --trajectory: where the force acts, as in `simulate`; needed where --force names a force
     /// without a yaw moment
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true,
-        requires = "trajectory")]
+        requires = "trajectory", conflicts_with_all = ["scenario", "dataset"])]
     contact: Option<ContactPoint>,
     /// The force network: `shipped`, which is asked of a scenario where nothing is said, or a file
     #[arg(long, value_name = "MODEL", conflicts_with = "force")]
@@ -80,7 +85,7 @@ pub(in crate::cli) struct PredictMotionArgs {
     response_model: ModelSource,
     /// The ground: a site file, whose zones have their own friction; how likely the vehicles come to its
     /// lanes and kerbs is said
-    #[arg(long, value_name = "SITE.toml", requires = "scenario")]
+    #[arg(long, value_name = "SITE.toml", requires = "scenario", conflicts_with_all = NOT_OF_A_SCENARIO)]
     site: Option<PathBuf>,
     /// Friction of the road, instead of the vehicle's
     #[arg(long, value_name = "MU", value_parser = number(ROAD_FRICTION))]
@@ -103,7 +108,7 @@ pub(in crate::cli) struct PredictMotionArgs {
     until_rest: bool,
     /// With --scenario: do not follow both vehicles through all contacts; after the first one each moves
     /// as if it were alone
-    #[arg(long, requires = "scenario")]
+    #[arg(long, requires = "scenario", conflicts_with_all = NOT_OF_A_SCENARIO)]
     one_contact: bool,
     /// Seed of the draws
     #[arg(long, default_value_t = 0)]

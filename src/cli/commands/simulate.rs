@@ -36,6 +36,7 @@ use impactlab_study::{
     .args(["speed", "vy", "yaw_rate", "steer", "steer_map", "fishhook", "wheels", "wheels_map", "force"])))]
 #[command(group(ArgGroup::new("steering")
     .args(["steer", "fishhook", "steer_angle", "steering_wheel"])))]
+#[command(group(ArgGroup::new("mapped").args(["force", "trajectory"])))]
 pub(in crate::cli) struct SimulateArgs {
     /// Simulate every case of this trajectory data set from its recorded start and force, and
     /// compare; of recorded pairs both vehicles from their recorded starts, through all contacts; of a force
@@ -43,7 +44,7 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(long, value_name = "DIR", conflicts_with_all = SINGLE_ONLY)]
     dataset: Option<PathBuf>,
     /// With --dataset: only this case
-    #[arg(long, value_name = "NAME", requires = "dataset")]
+    #[arg(long, value_name = "NAME", requires = "dataset", conflicts_with_all = NOT_OF_A_DATASET)]
     case: Option<String>,
     /// Simulate both vehicles of this scenario, with the impulse spread over a classic pulse
     #[arg(long, value_name = "NAME|FILE", conflicts_with_all = NOT_WITH_SCENARIO)]
@@ -77,7 +78,7 @@ pub(in crate::cli) struct SimulateArgs {
     until_rest: bool,
     /// With --scenario: do not follow both vehicles through all contacts; after the first one each moves
     /// as if it were alone
-    #[arg(long, requires = "scenario")]
+    #[arg(long, requires = "scenario", conflicts_with_all = NOT_OF_A_SCENARIO)]
     one_contact: bool,
     /// The ground: a site file, whose zones have their own friction
     #[arg(long, value_name = "SITE.toml")]
@@ -93,7 +94,14 @@ const NOT_WITH_SCENARIO: [&str; 6] =
     ["dataset", "trajectory", "start", "map", "sampling", "contact"];
 
 /// What a recorded motion says itself.
-const NOT_WITH_TRAJECTORY: [&str; 4] = ["dataset", "scenario", "start", "duration"];
+const NOT_WITH_TRAJECTORY: [&str; 5] = ["dataset", "scenario", "start", "sampling", "duration"];
+
+/// Sources of another kind than a data set. An option that requires one is not missed by clap where something
+/// else is given that excludes the data set, so that what belongs to it has to exclude that as well.
+const NOT_OF_A_DATASET: [&str; 3] = ["scenario", "trajectory", "start"];
+
+/// Sources of another kind than a scenario, likewise.
+const NOT_OF_A_SCENARIO: [&str; 3] = ["dataset", "trajectory", "start"];
 
 /// What a data set says itself.
 const SINGLE_ONLY: [&str; 7] =
@@ -137,7 +145,8 @@ struct SingleArgs {
     #[arg(long, value_name = "FILE")]
     steer: Option<PathBuf>,
     /// Which column of the steer file is what: time=1:s,steer=2:deg
-    #[arg(long, value_name = "MAP", requires = "steer")]
+    #[arg(long, value_name = "MAP", requires = "steer",
+        conflicts_with_all = ["fishhook", "steer_angle", "steering_wheel"])]
     steer_map: Option<ColumnMap>,
     /// Steer the fishhook of the NHTSA's rollover test, to the left first
     #[arg(long)]
@@ -154,7 +163,7 @@ struct SingleArgs {
     #[arg(long, value_name = "F.csv")]
     force: Option<PathBuf>,
     /// Which column of the force file or the recorded motion is what: time=1:ms,fx=Kraft X:kN
-    #[arg(long)]
+    #[arg(long, requires = "mapped")]
     map: Option<ColumnMap>,
     /// What a force sample stands for; without it, as the columns suggest
     #[arg(long, value_parser = one_of(SAMPLINGS), requires = "force")]
@@ -204,6 +213,7 @@ pub(in crate::cli) fn run(
             Err(CliError::EndingOfDataset)
         }
         (Some(_), _) if args.site.is_some() => Err(CliError::SiteOfDataset),
+        (Some(_), _) if args.single.vehicle_draws.is_some() => Err(CliError::DrawsOfDataset),
         (Some(root), _) => simulate_dataset(args, root, console),
         (None, _) => simulate_one(args, source(args), console),
     }

@@ -84,7 +84,7 @@ struct RunArgs {
     #[arg(long)]
     array: bool,
     /// Task t of the array has every N-th chunk from t on, whichever other tasks there are
-    #[arg(long, value_name = "N", requires = "array")]
+    #[arg(long, value_name = "N", requires = "array", conflicts_with_all = ["chunk", "chunks"])]
     #[arg(value_parser = clap::value_parser!(u64).range(1..))]
     stride: Option<u64>,
 }

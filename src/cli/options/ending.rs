@@ -23,7 +23,8 @@ use impactlab_core::vehicle::{
 pub(in crate::cli) struct EndingArgs {
     /// The vehicle coasts, also where the scenario says something else
     #[arg(long, conflicts_with_all = ["brake", "engine_braking", "drive_torque", "locked",
-        "dragged", "steer_angle", "steering_wheel", "esc", "countersteer"])]
+        "dragged", "steer_angle", "steering_wheel", "esc", "countersteer", "brake_start", "brake_rise", "abs",
+        "drive_start", "driven", "steer_start", "steer_rise"])]
     coast: bool,
     /// The driver brakes with this share of what the road can hold (more than 1 locks the wheels,
     /// unless there is --abs or --esc)

@@ -37,6 +37,10 @@ pub(in crate::cli) struct LearningDataArgs {
     choice: Option<u64>,
 }
 
+/// What excludes the force of a log. An option that requires it is not missed by clap where one of these is
+/// given, so that what belongs to the force has to exclude them as well; likewise for logs and data sets.
+const NOT_OF_A_FORCE: [&str; 2] = ["data", "no_impact"];
+
 /// Where logs come from.
 #[derive(Debug, Args)]
 struct LogArgs {
@@ -46,30 +50,33 @@ struct LogArgs {
     log: Vec<PathBuf>,
     /// The contact force of each log, in their order and on their clock; without it, estimated from
     /// the change of momentum
-    #[arg(long, value_name = "F.csv", requires = "log")]
+    #[arg(long, value_name = "F.csv", requires = "log", conflicts_with = "data")]
     force: Vec<PathBuf>,
     /// Which column of the logs is what: time=1:s,x=2:m,y=3:m,yaw=4:deg
-    #[arg(long, value_name = "MAP", requires = "log")]
+    #[arg(long, value_name = "MAP", requires = "log", conflicts_with = "data")]
     map: Option<ColumnMap>,
     /// Which column of the files of the forces is what: time=1:ms,fx=Kraft X:kN
-    #[arg(long, value_name = "MAP", requires = "force")]
+    #[arg(long, value_name = "MAP", requires = "force", conflicts_with_all = NOT_OF_A_FORCE)]
     force_map: Option<ColumnMap>,
     /// With --force: where the force acts, x, y from the CG in body axes, z above the ground, m;
     /// without it, the force file's own yaw moment
-    #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true, requires = "force")]
+    #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true,
+        requires = "force", conflicts_with_all = NOT_OF_A_FORCE)]
     contact: Option<ContactPoint>,
     /// First contact on the logs' clock, s; from the force, or from the motion, if not given
-    #[arg(long, value_name = "TIME", value_parser = number(INSTANT), allow_hyphen_values = true, requires = "log")]
+    #[arg(long, value_name = "TIME", value_parser = number(INSTANT), allow_hyphen_values = true,
+        requires = "log", conflicts_with = "data")]
     impact: Option<f64>,
     /// Nothing was struck, as in a test drive: no force is looked for in the motion
-    #[arg(long, requires = "log", conflicts_with_all = ["force", "impact"])]
+    #[arg(long, requires = "log", conflicts_with_all = ["force", "impact", "data"])]
     no_impact: bool,
     /// Angle of the steering wheel over that of the road wheels, for logs with steering_wheel
     #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO),
-        allow_hyphen_values = true, requires = "log")]
+        allow_hyphen_values = true, requires = "log", conflicts_with = "data")]
     steering_ratio: Option<f64>,
     /// How much of a log from the first contact on is learned from, s
-    #[arg(long, value_name = "TIME", value_parser = number(LOG_DURATION), default_value_t = DEFAULT_LOG_DURATION_S, requires = "log")]
+    #[arg(long, value_name = "TIME", value_parser = number(LOG_DURATION), default_value_t = DEFAULT_LOG_DURATION_S,
+        requires = "log", conflicts_with = "data")]
     duration: f64,
 }
 

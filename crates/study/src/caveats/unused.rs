@@ -280,6 +280,15 @@ pub(crate) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
             ),
         ));
     }
+    if request.one_contact {
+        unused.push(Caveat::not_used(
+            Phrase::new("one contact only", "nur der erste Kontakt"),
+            Phrase::new(
+                "only the vehicles of a scenario are followed through further contacts",
+                "nur die Fahrzeuge eines Szenarios werden durch weitere Kontakte verfolgt",
+            ),
+        ));
+    }
     if let MotionSource::Drive(drive) = &request.source
         && drive.force.is_none()
         && (drive.contact.is_some() || drive.sampling.is_some())
@@ -305,6 +314,29 @@ pub(crate) fn friction_not_drawn(request: &SimulateRequest) -> Option<Caveat> {
             Phrase::new(
                 "neither vehicles nor roads are drawn",
                 "weder Fahrzeuge noch Fahrbahnen werden gezogen",
+            ),
+        )
+    })
+}
+
+/// Vehicles that are to be drawn although neither the struck vehicle nor the road leaves anything open.
+///
+/// - `struck`: the struck vehicle.
+pub(crate) fn vehicles_not_drawn(
+    request: &SimulateRequest,
+    struck: &VehicleParameters,
+) -> Option<Caveat> {
+    let n_draws = request.vehicle_draws.filter(|n_draws| *n_draws > 0)?;
+    let is_road_open = request.friction_sigma.is_some_and(|sigma| sigma > 0.0);
+    (struck.sheet.is_none() && !is_road_open).then(|| {
+        Caveat::not_used(
+            Phrase::new("number of drawn vehicles, {0}", "Zahl gezogener Fahrzeuge, {0}")
+                .with(PhraseValue::Name(n_draws.to_string())),
+            Phrase::new(
+                "the struck vehicle has no data sheet with estimates, and no standard deviation of the friction \
+                 is stated",
+                "das gestoßene Fahrzeug hat kein Datenblatt mit Schätzwerten, und keine Standardabweichung des \
+                 Reibbeiwerts ist angegeben",
             ),
         )
     })

@@ -256,8 +256,7 @@ impl SimulateRequest {
             | MotionSource::Trajectory { .. }
             | MotionSource::Drive(_) => false,
         };
-        let usual = ROAD_FRICTION_SPREAD * vehicle.tires.friction;
-        let sigma = self.friction_sigma.unwrap_or(usual);
+        let sigma = self.friction_sigma.unwrap_or(ROAD_FRICTION_SPREAD * vehicle.tires.friction);
         (!is_of_record && sigma > 0.0).then_some(RoadDraws { sigma, seed })
     }
 
@@ -270,6 +269,7 @@ impl SimulateRequest {
         caveats: &mut Caveats,
     ) -> Option<VehicleUncertainty> {
         caveats.extend(unused::friction_not_drawn(self).filter(|_| !self.alone));
+        caveats.extend(unused::vehicles_not_drawn(self, &settings.struck));
         // A vehicle without estimates moves once, unless the question says how well the road is known.
         let is_open = settings.struck.sheet.is_some() || self.friction_sigma.is_some();
         let n_draws = if is_open { self.vehicle_draws.unwrap_or(DEFAULT_VEHICLE_DRAWS) } else { 0 };

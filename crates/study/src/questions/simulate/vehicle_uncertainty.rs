@@ -204,6 +204,31 @@ mod tests {
         assert!(medians.caveats.iter().any(|it| it.kind == CaveatKind::NotUsed));
     }
 
+    /// Draws of a vehicle of which nothing is open, and a choice of contacts of one that meets nothing, did
+    /// nothing and were not told.
+    #[test]
+    fn what_a_simulation_of_a_known_vehicle_does_not_use_is_told() {
+        let drive = Drive { speed_m_s: Some(20.0), ..Drive::default() };
+        let plain = SimulateRequest::new(MotionSource::Drive(drive));
+        let unused = |request: &SimulateRequest| {
+            let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+            let answer = request.answer(&Library::default(), &mut go_on).unwrap();
+            let caveats = answer.complete().unwrap().report.caveats;
+            let unused = caveats.iter().filter(|it| it.kind == CaveatKind::NotUsed);
+            unused.map(|it| it.text.clone()).collect::<Vec<String>>()
+        };
+        assert_eq!(unused(&plain), [""; 0]);
+        let draws = SimulateRequest { vehicle_draws: Some(50), ..plain.clone() };
+        assert_eq!(unused(&draws), ["number of drawn vehicles, 50"]);
+        let on_open_road = SimulateRequest { friction_sigma: Some(0.05), ..draws.clone() };
+        assert_eq!(unused(&on_open_road), [""; 0]);
+        let of_sheet =
+            SimulateRequest { vehicle: VehicleChoice::named("toyota-camry-2018"), ..draws };
+        assert_eq!(unused(&of_sheet), [""; 0]);
+        let one_contact = SimulateRequest { one_contact: true, ..plain };
+        assert_eq!(unused(&one_contact), ["one contact only"]);
+    }
+
     #[test]
     fn a_vehicle_that_is_known_and_one_that_coasts_straight_have_little_spread() {
         assert_eq!(report(pit(), "reference-2000", 20).uncertainty, None);
