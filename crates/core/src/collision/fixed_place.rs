@@ -46,7 +46,7 @@ pub(super) fn place_wall(
 mod tests {
     use std::path::Path;
 
-    use crate::collision::Scenario;
+    use crate::collision::{ContactLocation, Scenario, Side};
     use crate::data::TomlError;
 
     const CAR: &str = "[target]\nmass_kg = 1500\nyaw_inertia_kg_m2 = 2500\nlength_m = 4.5\n\
@@ -93,10 +93,29 @@ mod tests {
         );
     }
 
+    /// The car came to rest in other places by the heading of a pole, which has none: its outline is a square.
+    #[test]
+    fn a_pole_is_where_it_is_whatever_its_heading_and_that_of_the_road() {
+        for side in Side::ALL {
+            let mut scenario =
+                read("fixed = \"pole\"\ndiameter_m = 0.4", "offset_m = 0.5").unwrap();
+            scenario.contact.location = ContactLocation::Side { side, offset_m: 0.5 };
+            let expected = scenario.geometry().unwrap();
+            for heading_rad in [0.3, 0.8, 1.6, -2.0] {
+                scenario.striking.heading_rad = heading_rad;
+                assert_eq!(scenario.geometry().unwrap(), expected, "{side:?} {heading_rad}");
+            }
+            scenario.struck.heading_rad = 0.7;
+            let turned = scenario.geometry().unwrap();
+            let [x, y] = turned.struck.body_from_world(turned.contact_point_world_m);
+            let [x0, y0] = expected.contact_point_world_m;
+            assert!((x - x0).hypot(y - y0) < 1e-9, "{side:?}: {turned:?} {expected:?}");
+        }
+    }
+
     #[test]
     fn a_fixed_object_is_written_back_and_says_nothing_of_mass_or_speed() {
-        for object in ["fixed = \"wall\"", "fixed = \"pole\"\ndiameter_ft = 1.5\nheading_deg = 10"]
-        {
+        for object in ["fixed = \"wall\"", "fixed = \"pole\"\ndiameter_ft = 1.5"] {
             let scenario = read(object, "offset_m = 0.1").unwrap();
             let text = scenario.to_toml();
             let back = Scenario::from_toml(&text, Path::new("s.toml")).unwrap();
@@ -107,6 +126,7 @@ mod tests {
         for (object, expected) in [
             ("fixed = \"wall\"\nmass_kg = 9000", "bullet.mass_kg is not known here"),
             ("fixed = \"pole\"", "bullet.diameter_m is missing"),
+            ("fixed = \"pole\"\ndiameter_m = 0.4\nheading_deg = 45", "a pole is round"),
             ("fixed = \"tree\"", "expected \"wall\" or \"pole\""),
             ("fixed = \"wall\"\nvehicle = \"toyota-camry-2018\"", "say the same thing"),
         ] {

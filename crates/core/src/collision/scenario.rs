@@ -48,7 +48,7 @@ pub struct ScenarioVehicle {
     /// Yaw rate before the impact, rad/s, −50 to 50, counter-clockwise positive.
     pub yaw_rate_rad_s: f64,
     /// What it is, if it is an object that does not move. Mass, inertia and velocities are then those of
-    /// such an object, whatever is said.
+    /// such an object, whatever is said, and the heading of a pole, which is round, is that of the struck vehicle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fixed: Option<FixedObject>,
     /// A skid that ends at the first contact; the velocities are those after it.
@@ -265,7 +265,7 @@ impl ScenarioVehicle {
             return ImpactBody {
                 mass_kg: FIXED_MASS_KG,
                 yaw_inertia_kg_m2: FIXED_YAW_INERTIA_KG_M2,
-                heading_rad: self.heading_rad,
+                heading_rad: pose.yaw_rad,
                 velocity_world_m_s: [0.0; 2],
                 yaw_rate_rad_s: 0.0,
                 contact_arm_world_m: [contact_point_m[0] - pose.x_m, contact_point_m[1] - pose.y_m],
@@ -274,7 +274,7 @@ impl ScenarioVehicle {
         ImpactBody {
             mass_kg: self.mass_kg,
             yaw_inertia_kg_m2: self.yaw_inertia_kg_m2,
-            heading_rad: self.heading_rad,
+            heading_rad: pose.yaw_rad,
             velocity_world_m_s: [self.vx_world_m_s, self.vy_world_m_s],
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             contact_arm_world_m: [contact_point_m[0] - pose.x_m, contact_point_m[1] - pose.y_m],
@@ -357,7 +357,11 @@ impl Scenario {
             y_m: self.struck_y_world_m,
             yaw_rad: self.struck.heading_rad,
         };
-        let heading_rad = self.striking.heading_rad;
+        let heading_rad = match self.striking.fixed {
+            // Its outline is that of a square: no heading of its own may turn that.
+            Some(FixedObject::Pole) => self.struck.heading_rad,
+            Some(FixedObject::Wall) | None => self.striking.heading_rad,
+        };
         let striking_at = |x_m, y_m| Pose { x_m, y_m, yaw_rad: heading_rad };
         let outlines = [self.struck.footprint(), self.striking.footprint()];
         let striking = match self.contact.location {

@@ -282,13 +282,17 @@ fn read_location(
 
 /// An object that does not move.
 ///
-/// - `struck_heading_rad`: by which the object is turned where nobody says its heading.
+/// - `struck_heading_rad`: by which a wall is turned where nobody says its heading, and a pole always.
 fn read_fixed(
     mut section: TomlTable<'_>,
     object: FixedObject,
     struck_heading_rad: f64,
 ) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
+    let heading_rad = s.number("heading", &HEADING)?;
+    if object == FixedObject::Pole && heading_rad.is_some() {
+        return Err(s.refuse_last("no heading, since a pole is round"));
+    }
     let (length_m, width_m, usual_rad) = match object {
         FixedObject::Wall => (
             s.number("length", &BODY_LENGTH)?.unwrap_or(USUAL_WALL_M[0]),
@@ -300,7 +304,7 @@ fn read_fixed(
             (diameter_m, diameter_m, struck_heading_rad)
         }
     };
-    let heading_rad = s.number("heading", &HEADING)?.unwrap_or(usual_rad);
+    let heading_rad = heading_rad.unwrap_or(usual_rad);
     section.finish()?;
     Ok(ScenarioVehicle {
         mass_kg: FIXED_MASS_KG,

@@ -107,10 +107,10 @@ fn vehicle_lines(name: &str, vehicle: &ScenarioVehicle) -> Lines {
             FixedObject::Wall => {
                 lines.number("length_m", vehicle.length_m);
                 lines.number("width_m", vehicle.width_m);
+                lines.number("heading_rad", vehicle.heading_rad);
             }
             FixedObject::Pole => lines.number("diameter_m", vehicle.length_m),
         }
-        lines.number("heading_rad", vehicle.heading_rad);
         return lines;
     }
     for (key, value) in [
