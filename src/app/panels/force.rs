@@ -10,7 +10,7 @@ use crate::app::playback::PlaybackCommand;
 use crate::app::project::Project;
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, time_figure, value_row};
-use impactlab_core::collision::{ChannelClass, Pulse, PulseShape};
+use impactlab_core::collision::{ChannelClass, PrincipalDirectionOfForce, Pulse, PulseShape};
 use impactlab_core::data::{ForceHistory, contact_interval};
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_document::figure::analysis_force_figure;
@@ -128,7 +128,10 @@ fn contact_text(force: &ForceReport) -> String {
 /// impact, and its clock direction; “none” without an impulse.
 fn pdof_text(force: &ForceReport) -> String {
     match (force.pdof_deg, force.pdof_clock) {
-        (Some(angle_deg), Some(clock)) => format!("{angle_deg:.0} deg, {clock} o'clock"),
+        (Some(angle_deg), Some(clock)) => {
+            let pdof = PrincipalDirectionOfForce::from_angle(angle_deg.to_radians());
+            format!("{:.0} deg, {clock} o'clock", pdof.written_rad(0).to_degrees())
+        }
         _ => "none".to_owned(),
     }
 }

@@ -4,6 +4,9 @@
 
 use std::f64::consts::TAU;
 
+/// Angle below a whole turn that is rounding, rad.
+const ROUNDING_RAD: f64 = 1e-9;
+
 /// Direction from which the collision force comes, as seen by the occupants of the vehicle:
 /// opposite to the force vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,10 +34,31 @@ impl PrincipalDirectionOfForce {
         }
         let (sin, cos) = heading_rad.sin_cos();
         let (forward, left) = (x * cos + y * sin, y * cos - x * sin);
-        let angle = left.atan2(-forward).rem_euclid(TAU);
-        // For a tiny negative angle, `rem_euclid` rounds to 2π, which lies outside the interval.
-        let angle_rad = if angle < TAU { angle } else { 0.0 };
-        Some(Self { angle_rad })
+        Some(Self::from_angle(left.atan2(-forward)))
+    }
+
+    /// The direction of an angle that may lie outside of one turn.
+    pub fn from_angle(angle_rad: f64) -> Self {
+        let angle = angle_rad.rem_euclid(TAU);
+        // Rounding of a force from straight ahead leaves a whole turn or nothing.
+        Self { angle_rad: if TAU - angle > ROUNDING_RAD { angle } else { 0.0 } }
+    }
+
+    /// The angle about which an interval is written, rad: less than 0 where the angle would be written as a
+    /// whole turn, so that no direction is told as 360 deg and the same one elsewhere as 0.
+    ///
+    /// - `decimals`: of a degree.
+    pub fn centre_rad(self, decimals: i32) -> f64 {
+        let half_a_digit_rad = (0.5 * 10.0_f64.powi(-decimals)).to_radians();
+        let is_whole_turn = TAU - self.angle_rad <= half_a_digit_rad;
+        if is_whole_turn { self.angle_rad - TAU } else { self.angle_rad }
+    }
+
+    /// The angle as a single number, rad, which is 0 in place of a whole turn.
+    ///
+    /// - `decimals`: of a degree, with which it is written.
+    pub fn written_rad(self, decimals: i32) -> f64 {
+        self.centre_rad(decimals).max(0.0)
     }
 
     /// The angle in degrees, clockwise from straight ahead, in `[0, 360)`.
@@ -71,5 +95,35 @@ mod tests {
             assert_eq!(pdof.clock(), clock, "{impulse:?}: {pdof:?}");
         }
         assert!(PrincipalDirectionOfForce::from_impulse([0.0, 0.0], 0.0).is_none());
+    }
+
+    /// Straight ahead was told as 360.0 beside 0.0, by the rounding of a heading.
+    #[test]
+    fn straight_ahead_is_told_as_nothing_and_never_as_a_whole_turn() {
+        for heading_deg in [0.0, 17.0, 45.0, 90.0, 123.4, 270.0] {
+            let heading_rad = f64::to_radians(heading_deg);
+            for off_rad in [-1e-12, 0.0, 1e-12] {
+                let (sin, cos) = (heading_rad + off_rad).sin_cos();
+                let impulse = [-5e3 * cos, -5e3 * sin];
+                let pdof = PrincipalDirectionOfForce::from_impulse(impulse, heading_rad).unwrap();
+                assert!(pdof.angle_rad < 1e-9, "{heading_deg} {off_rad}: {pdof:?}");
+                assert_eq!(pdof.clock(), 12);
+            }
+        }
+        let at = |deg: f64| PrincipalDirectionOfForce::from_angle(deg.to_radians());
+        for (deg, decimals, centre_deg, written_deg) in [
+            (359.7, 0, -0.3, 0.0),
+            (359.7, 1, 359.7, 359.7),
+            (359.96, 1, -0.04, 0.0),
+            (-0.2, 0, -0.2, 0.0),
+            (359.4, 0, 359.4, 359.4),
+            (0.3, 0, 0.3, 0.3),
+            (180.0, 0, 180.0, 180.0),
+        ] {
+            let [centre, written] =
+                [at(deg).centre_rad(decimals), at(deg).written_rad(decimals)].map(f64::to_degrees);
+            assert!((centre - centre_deg).abs() < 1e-9, "{deg} {decimals}: {centre}");
+            assert!((written - written_deg).abs() < 1e-9, "{deg} {decimals}: {written}");
+        }
     }
 }

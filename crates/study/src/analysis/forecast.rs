@@ -1,8 +1,6 @@
 //! A predicted impact force in the form in which it is shown: bands, mean curve, drawn curves, and
 //! scalar quantities with their intervals.
 
-use std::f64::consts::TAU;
-
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -127,14 +125,16 @@ impl ForceForecast {
 }
 
 /// Estimate of the principal direction of force from drawn impulses [x, y], N s. Angles are taken
-/// relative to the direction of the impulse `mean`, so that the intervals do not jump at 2π.
+/// relative to the direction of the impulse `mean`, so that the intervals do not jump at 2π, about a median that
+/// is not told as a whole turn.
 fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
     let angle = |impulse| PrincipalDirectionOfForce::from_impulse(impulse, 0.0);
     let centre_rad = angle(mean).map_or(0.0, |pdof| pdof.angle_rad);
     let off = |impulse: &[f64; 2]| Some(wrap_angle_rad(angle(*impulse)?.angle_rad - centre_rad));
     let around = bands_of_draws(impulses.iter().filter_map(off).collect());
     let median = around.median + centre_rad;
-    let shift = centre_rad + median.rem_euclid(TAU) - median;
+    let within_a_turn = PrincipalDirectionOfForce::from_angle(median).centre_rad(0);
+    let shift = centre_rad + within_a_turn - median;
     around.mapped(|angle| angle + shift)
 }
 
@@ -266,7 +266,7 @@ mod tests {
         for mean in [[-1000.0, 100.0], [-1000.0, -100.0]] {
             let spread = pdof_rad(mean, &impulses);
             let [low, high] = spread.ninety();
-            assert!((0.0..TAU).contains(&spread.median), "{spread:?}");
+            assert!(spread.median.abs() < 1e-9, "straight ahead is 0, not 360 deg: {spread:?}");
             assert!((high - low - 0.358).abs() < 0.01, "{spread:?}");
         }
     }

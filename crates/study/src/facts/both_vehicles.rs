@@ -1,7 +1,6 @@
 //! The facts of two vehicles that were followed through all contacts.
 
-use std::f64::consts::TAU;
-
+use impactlab_core::collision::PrincipalDirectionOfForce;
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 use impactlab_networks::pair::{Course, CourseShare};
@@ -132,7 +131,10 @@ pub(super) fn phase_table(phases: &[ContactPhaseReport]) -> Option<FactTable> {
 /// A principal direction of force, clockwise from the heading within one turn.
 fn pdof_value(angle_rad: Option<f64>) -> Value {
     match angle_rad {
-        Some(angle_rad) => Value::Decimals(Quantity::Angle, angle_rad.rem_euclid(TAU), 0),
+        Some(angle_rad) => {
+            let pdof = PrincipalDirectionOfForce::from_angle(angle_rad);
+            Value::Decimals(Quantity::Angle, pdof.written_rad(0), 0)
+        }
         None => Value::Term(Term::NoImpulse),
     }
 }

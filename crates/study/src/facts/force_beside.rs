@@ -3,6 +3,7 @@
 use impactlab_core::units::Quantity;
 
 use crate::PredictMotionReport;
+use crate::facts::impact::pdof_value;
 use crate::facts::{Fact, FactTable, Term, Value};
 
 impl PredictMotionReport {
@@ -62,7 +63,7 @@ impl PredictMotionReport {
         let values = [
             number(Quantity::Impulse, Some(of.impulse_magnitude_n_s)),
             number(Quantity::Speed, Some(of.delta_v_m_s)),
-            number(Quantity::Angle, of.force.pdof_deg.map(f64::to_radians)),
+            of.force.pdof_deg.map_or_else(|| Term::NoImpulse.into(), pdof_value),
             number(Quantity::Force, Some(of.force.peak_n)),
             number(Quantity::Time, of.duration_s()),
         ];

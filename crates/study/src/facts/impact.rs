@@ -1,6 +1,6 @@
 //! The facts of an impulse solution.
 
-use impactlab_core::collision::{FrictionModel, StruckSurface};
+use impactlab_core::collision::{FrictionModel, PrincipalDirectionOfForce, StruckSurface};
 use impactlab_core::units::Quantity;
 
 use crate::facts::{Fact, FactTable, Term, Value};
@@ -123,12 +123,18 @@ fn overlap(overlap_m: f64) -> Fact {
     }
 }
 
+/// A principal direction of force that has no interval, four digits.
+pub(super) fn pdof_value(pdof_deg: f64) -> Value {
+    let pdof = PrincipalDirectionOfForce::from_angle(pdof_deg.to_radians());
+    Value::Number(Quantity::Angle, pdof.written_rad(1))
+}
+
 impl BodyReport {
     /// Change of velocity, velocity, yaw rate, its change and the direction of force.
     fn values(&self) -> [Value; 6] {
         let velocity = |value| Value::Vector(Quantity::Speed, value, ["x", "y"]);
         let none = Value::Term(Term::None);
-        let pdof = self.pdof_deg.map(|deg| Value::Number(Quantity::Angle, deg.to_radians()));
+        let pdof = self.pdof_deg.map(pdof_value);
         [
             velocity(self.delta_v_m_s),
             velocity(self.velocity_m_s),

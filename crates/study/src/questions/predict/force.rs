@@ -327,7 +327,7 @@ impl PredictForceReport {
         prediction: &ForcePrediction,
         forecast: &ForceForecast,
     ) -> Self {
-        let pdof = PrincipalDirectionOfForce { angle_rad: forecast.pdof_rad.median };
+        let pdof = PrincipalDirectionOfForce::from_angle(forecast.pdof_rad.median);
         let [x, y] = forecast.impulse_n_s.clone();
         let magnitude = forecast.impulse_magnitude_n_s.clone();
         let mean = [0, 1].map(|axis| prediction.mixture.impulse(axis).mean());

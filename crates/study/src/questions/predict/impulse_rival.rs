@@ -230,7 +230,8 @@ impl ImpulseRival {
         };
         let momentum_impulse_n_s = spread(&|z| size_n_s * (MOMENTUM_IMPULSE_LOG_STD * z).exp());
         let direction_std_deg = MOMENTUM_DIRECTION_STD_RAD.to_degrees();
-        let momentum_pdof_deg = spread(&|z| pdof.angle_deg() + direction_std_deg * z);
+        let centre_deg = pdof.centre_rad(0).to_degrees();
+        let momentum_pdof_deg = spread(&|z| centre_deg + direction_std_deg * z);
         let network_impulse_n_s = predicted.impulse_n_s.magnitude.clone();
         let network_pdof_deg = predicted.pdof_interval_deg.clone();
         let holds = |size: &Estimate, direction_deg: &Estimate, of: [&Estimate; 2]| {
