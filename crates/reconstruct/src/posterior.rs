@@ -314,14 +314,18 @@ impl BudgetItem {
 }
 
 impl ReconstructionTarget {
-    /// Share of the particles whose cars meet again after the impact, as far as it alone moves them;
-    /// `None` for cars whose dimensions make no outline.
-    pub fn meet_again_share(&self, particles: &Particles) -> Option<f64> {
+    /// Share of the particles whose cars meet again after the impact, as far as it alone moves them, and
+    /// its standard error; `None` for cars whose dimensions make no outline.
+    pub fn meet_again_share(&self, particles: &Particles) -> Option<[f64; 2]> {
         let model = self.model().clone().watching_contacts();
         let meet: Option<Vec<bool>> =
             model.motions(&particles.z, |motion| motion.meet_again).into_iter().collect();
         let meet = meet?;
-        Some(meet.iter().filter(|meet| **meet).count() as f64 / meet.len().max(1) as f64)
+        let modes = modes_by(particles, |idx| meet.get(idx) == Some(&true));
+        // It is that of the others, too.
+        let standard_error = modes.first()?.standard_error;
+        let share = modes.iter().find(|mode| mode.key).map_or(0.0, |mode| mode.probability);
+        Some([share, standard_error])
     }
 
     /// How well the posterior explains each item of the evidence, and by how much the struck or

@@ -58,11 +58,10 @@ impl ReconstructReport {
         let mut facts: Vec<Fact> = self.quantities.iter().map(quantity_fact).collect();
         facts.extend(zones(&self.friction_zones));
         let meet_again = self.later_contacts.filter(LaterContactsReport::is_told);
-        facts.extend(
-            meet_again.map(|later| {
-                Fact::new(Term::MeetAgainByImpact, Value::Share(later.meet_again_share))
-            }),
-        );
+        facts.extend(meet_again.map(|later| {
+            let error = Some(later.meet_again_standard_error);
+            Fact::new(Term::MeetAgainByImpact, Value::Chance(later.meet_again_share, error))
+        }));
         facts.extend([
             Fact::new(Term::Motions, Value::Count(self.n_simulations)),
             Fact::new(Term::Particles, Value::Count(self.n_particles)),

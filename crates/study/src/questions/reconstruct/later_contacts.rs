@@ -18,6 +18,8 @@ pub struct LaterContactsReport {
     /// Share of the particles of a reconstruction from the first contact alone whose cars meet again. A
     /// striking car of which nothing is known then coasts.
     pub meet_again_share: f64,
+    /// Standard error of that share.
+    pub meet_again_standard_error: f64,
     /// Whether both cars were then followed through all contacts.
     pub are_followed: bool,
     #[serde(skip)]
@@ -65,9 +67,12 @@ impl WhyNot {
 
 impl LaterContactsReport {
     /// What is done where some of the particles of the first contact alone meet again.
-    pub(super) fn new(meet_again_share: f64, why_not: Option<WhyNot>) -> Self {
+    ///
+    /// - `share`: their share, and its standard error.
+    pub(super) fn new(share: [f64; 2], why_not: Option<WhyNot>) -> Self {
+        let [meet_again_share, meet_again_standard_error] = share;
         let are_followed = why_not.is_none() && meet_again_share >= TOLD_FROM;
-        Self { meet_again_share, are_followed, why_not }
+        Self { meet_again_share, meet_again_standard_error, are_followed, why_not }
     }
 
     /// Whether a person hears of it.
@@ -80,7 +85,8 @@ impl LaterContactsReport {
         if !self.is_told() {
             return None;
         }
-        let share = PhraseValue::Chance { share: self.meet_again_share, error: None };
+        let error = Some(self.meet_again_standard_error);
+        let share = PhraseValue::Chance { share: self.meet_again_share, error };
         Some(match self.why_not {
             None => {
                 let text = Phrase::new(
@@ -161,7 +167,7 @@ mod tests {
         let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
         let all = [WhyNot::Asked, WhyNot::NoEvidence, WhyNot::DriverUnknown, WhyNot::Stopped];
         for why_not in all.map(Some).into_iter().chain([None]) {
-            let caveat = LaterContactsReport::new(0.3, why_not).caveat().unwrap();
+            let caveat = LaterContactsReport::new([0.3, 0.02], why_not).caveat().unwrap();
             let text = caveat.text_in(&german, &str::to_owned).unwrap();
             assert!(!text.contains('[') && !text.contains("--"), "{text}");
         }
@@ -170,7 +176,7 @@ mod tests {
     #[test]
     fn later_contacts_are_followed_where_the_evidence_tells_and_a_person_hears_of_them() {
         let kind = |share, why_not| {
-            let report = LaterContactsReport::new(share, why_not);
+            let report = LaterContactsReport::new([share, 0.02], why_not);
             (report.are_followed, report.caveat().map(|caveat| caveat.kind))
         };
         assert_eq!(kind(0.01, None), (false, None));
@@ -178,6 +184,14 @@ mod tests {
         assert_eq!(kind(0.3, Some(WhyNot::NoEvidence)), (false, Some(CaveatKind::Note)));
         for why_not in [WhyNot::Asked, WhyNot::DriverUnknown, WhyNot::Stopped] {
             assert_eq!(kind(0.3, Some(why_not)), (false, Some(CaveatKind::SecondContact)));
+        }
+    }
+    /// “80 %” stood there, as if no number of particles had been counted.
+    #[test]
+    fn the_share_of_the_cars_that_meet_again_has_its_standard_error() {
+        for why_not in [None, Some(WhyNot::NoEvidence), Some(WhyNot::Asked)] {
+            let caveat = LaterContactsReport::new([0.8, 0.0125], why_not).caveat().unwrap();
+            assert!(caveat.text.contains("80.0 % ± 1.3 %"), "{caveat}");
         }
     }
 }
