@@ -176,8 +176,12 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
     if is_first_time || resets {
-        // The axes take the room that they took the last time: none in this pass.
+        // The axes take the room that they took the last time: none in this pass. It is drawn again in the
+        // next frame where this one has no pass left.
         ui.ctx().request_discard("axes without room");
+        if !ui.ctx().will_discard() {
+            ui.ctx().request_repaint();
+        }
     }
     let has_axes = response.response.rect.left() > left;
     if let Some(seen) = seen.filter(|_| has_axes) {
@@ -438,5 +442,29 @@ mod tests {
             let [ticks_end, label_begins] = ticks_and_label(&context, &figure);
             assert!(ticks_end <= label_begins, "{ticks_end} {label_begins}");
         }
+    }
+
+    /// A pane that was laid out anew had no pass left for its plots, whose labels stood in their ticks until
+    /// the pointer moved.
+    #[test]
+    fn a_figure_that_is_new_in_the_last_pass_of_a_frame_is_drawn_again_in_the_next_one() {
+        let axis = |title| Axis::shown(title, Quantity::Time, UnitSystem::Si);
+        let curve = FigureElement::line("F", Role::Resultant, vec![[0.0, 0.0], [1.0, 1.0]]);
+        let figure = Figure::new("figure", [axis("along"), axis("across")], vec![curve]);
+        let context = egui::Context::default();
+        let draws_again = |shows: bool| {
+            let output = context.run_ui(egui::RawInput::default(), |ui| match shows {
+                true if ui.ctx().current_pass_index() > 0 => {
+                    figure_ui(ui, &figure, &FigureOptions::default());
+                }
+                true => ui.ctx().request_discard("another part is laid out anew"),
+                false => {}
+            });
+            let root = output.viewport_output.get(&egui::ViewportId::ROOT);
+            root.is_some_and(|root| root.repaint_delay.is_zero())
+        };
+        let is_settled = (0..10).any(|_| !draws_again(false));
+        assert!(is_settled, "nothing is drawn and asks for another frame");
+        assert!(draws_again(true));
     }
 }
