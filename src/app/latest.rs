@@ -27,8 +27,10 @@ pub struct Latest<Q: Question> {
     n_answered: u64,
     /// Number of the latest question whose answer is not to be shown.
     n_dropped: u64,
-    /// When the question that was asked last was asked.
+    /// When the question that was asked last was asked, or the one after whose answer it was.
     question_at: Option<Instant>,
+    /// Number of the question of another kind after whose answer the last one was asked.
+    n_before: u64,
     /// The question that was asked last.
     pub question: Option<Q>,
     /// The latest answer, or the reason why there is none. It belongs to `question` unless
@@ -60,6 +62,7 @@ impl<Q: Question> Default for Latest<Q> {
             n_answered: 0,
             n_dropped: 0,
             question_at: None,
+            n_before: 0,
             question: None,
             answer: None,
             n_in_part: 0,
@@ -129,6 +132,25 @@ impl<Q: Question> Latest<Q> {
                 self.answer = Some(Err(error.to_string()));
             }
         }
+    }
+
+    /// Asks a question that follows from the answer to another one, unless it equals the question that was
+    /// asked last. What is shown is out of date since that one was asked.
+    ///
+    /// - `before`: the other question with its answer.
+    pub fn ask_after<P: Question>(
+        &mut self,
+        before: &Latest<P>,
+        question: Q,
+        library: &Arc<Library>,
+        wake: impl Fn() + Send + 'static,
+    ) {
+        let n_questions = self.n_questions;
+        self.ask(question, library, wake);
+        if self.n_questions != n_questions && self.n_before != before.n_questions {
+            self.question_at = before.question_at;
+        }
+        self.n_before = before.n_questions;
     }
 
     /// Whether the answer to the latest question has not arrived yet.
@@ -363,6 +385,20 @@ mod tests {
         // A question that cannot be answered coarsely is answered in full.
         ask(&mut latest, 147);
         assert_eq!(settled(&mut latest), Some(Err("there is no model \"147\"".to_owned())));
+    }
+
+    /// A forecast of an earlier question was shown as if it were of the present one, whenever the simulation
+    /// that it waits for had come.
+    #[test]
+    fn what_waits_for_another_answer_is_out_of_date_since_that_was_asked_for() {
+        let (mut before, mut after) = (Latest::default(), Latest::default());
+        ask(&mut before, 8);
+        std::thread::sleep(2 * SEEN);
+        assert!(settled(&mut before).is_some());
+        after.ask_after(&before, Halve(146), &Arc::default(), || {});
+        assert!(after.is_late());
+        after.ask_after(&before, Halve(166), &Arc::default(), || {});
+        assert!(after.is_waiting() && !after.is_late(), "it has changed by itself");
     }
 
     #[test]

@@ -80,8 +80,9 @@ impl State {
             return;
         }
         let Some(request) = self.motion_request() else { return };
-        let (response, library) = (&mut self.session.response, &self.session.library);
-        response.forecast.ask(MotionQuestion { request }, library, wake(context));
+        let Session { response, library, analysis, .. } = &mut self.session;
+        let question = MotionQuestion { request };
+        response.forecast.ask_after(analysis, question, library, wake(context));
     }
 
     /// Asks for the density of the predicted position at the chosen times, if the question has
