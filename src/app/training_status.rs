@@ -213,9 +213,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
                 (report.progress().fraction(), left.at(*at))
             }
             Some(TrainingReport::Epoch(epoch)) => {
-                let (done, total) = epoch.progress();
-                let n_left = total.saturating_sub(done).div_ceil(epoch.n_at_once.max(1));
-                let left = time_left(self.seconds.iter().copied(), n_left);
+                let left = time_left(self.seconds.iter().copied(), epoch.n_in_a_row());
                 (Some(epoch.share_done() as f32), left)
             }
         }
@@ -272,7 +270,7 @@ mod tests {
             training_idx: 0,
             n_trainings: 1,
             n_done_elsewhere: 0,
-            n_at_once: 1,
+            rounds_left: None,
         }));
         status.is_over = true;
         assert_eq!(status.reached().as_deref(), Some("epoch 1 of 100"));
@@ -292,7 +290,7 @@ mod tests {
                 training_idx,
                 n_trainings: 5,
                 n_done_elsewhere: 0,
-                n_at_once: 2,
+                rounds_left: None,
             }));
             status.reached().unwrap()
         };
@@ -320,7 +318,7 @@ mod tests {
             training_idx: 0,
             n_trainings: 1,
             n_done_elsewhere: 0,
-            n_at_once: 1,
+            rounds_left: None,
         }));
         assert_eq!(status.history, std::slice::from_ref(&last));
         status.take_epochs_of(&model);

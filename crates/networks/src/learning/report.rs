@@ -97,8 +97,9 @@ pub struct EpochReport {
     pub n_trainings: usize,
     /// Epochs of the other trainings that are over.
     pub n_done_elsewhere: usize,
-    /// Number of trainings that run at the same time.
-    pub n_at_once: usize,
+    /// Epochs still to come one after the other where trainings run side by side, which share the time;
+    /// `None` where all do.
+    pub rounds_left: Option<usize>,
 }
 
 /// What a progress bar or a plot shows of an epoch.
@@ -155,6 +156,12 @@ impl EpochReport {
     pub fn progress(&self) -> (usize, usize) {
         let n = self.n_in_training();
         (self.n_done_elsewhere + self.epoch_in_training(), self.n_trainings * n)
+    }
+
+    /// Epochs still to come one after the other.
+    pub fn n_in_a_row(&self) -> usize {
+        let (done, total) = self.progress();
+        self.rounds_left.unwrap_or(total.saturating_sub(done))
     }
 
     /// Share that is done of all trainings, 0 to 1.
@@ -231,7 +238,7 @@ mod tests {
             training_idx: 0,
             n_trainings: 3,
             n_done_elsewhere: 0,
-            n_at_once: 1,
+            rounds_left: None,
         }
     }
 
@@ -239,7 +246,7 @@ mod tests {
     fn epochs_before_the_training_do_not_count_as_progress() {
         assert_eq!(report().progress(), (2, 30));
         let calibration = EpochReport { training_idx: 2, n_done_elsewhere: 20, ..report() };
-        assert_eq!(calibration.progress(), (22, 30));
+        assert_eq!((calibration.progress(), calibration.n_in_a_row()), ((22, 30), 8));
         assert!((calibration.share_done() - 22.0 / 30.0).abs() < 1e-12);
     }
 

@@ -444,7 +444,7 @@ impl EpochLoop for ForceTrainingRun<'_> {
             training_idx: 0,
             n_trainings: 1,
             n_done_elsewhere: 0,
-            n_at_once: 1,
+            rounds_left: None,
         }))
     }
 

@@ -171,12 +171,27 @@ fn numbered(
                 training_idx,
                 n_trainings: n_done.len(),
                 n_done_elsewhere,
-                n_at_once,
+                rounds_left: Some(rounds_left(n_done, epoch.n_in_training(), n_at_once)),
                 ..epoch
             })
         }
         fit @ TrainingReport::Fit(_) => fit,
     }
+}
+
+/// Epochs still to come one after the other of trainings that begin in their order, each as soon as one that
+/// is under way has ended.
+///
+/// - `n_done`: epochs of each training that are over; `None` of one that has ended;
+/// - `n_epochs`: epochs of each training.
+fn rounds_left(n_done: &[Option<usize>], n_epochs: usize, n_at_once: usize) -> usize {
+    let mut threads = vec![0; n_at_once.max(1)];
+    for done in n_done.iter().flatten() {
+        if let Some(first_free) = threads.iter_mut().min() {
+            *first_free += n_epochs.saturating_sub(*done);
+        }
+    }
+    threads.into_iter().max().unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -206,7 +221,7 @@ mod tests {
             training_idx: 0,
             n_trainings: 1,
             n_done_elsewhere: 0,
-            n_at_once: 1,
+            rounds_left: None,
         })
     }
 
@@ -239,6 +254,19 @@ mod tests {
             assert_eq!(n_told, usize::from(!fails));
             assert_eq!(flow.recv(), Ok(ControlFlow::Break(())));
             assert_eq!(next.into_inner(), 5);
+        }
+    }
+
+    /// The last of several trainings was said to take a fraction of its time, as if others shared its epochs.
+    #[test]
+    fn a_training_that_is_left_alone_takes_all_of_its_epochs() {
+        for (n_done, expected) in [
+            (vec![Some(0); 4], 20),
+            (vec![Some(5), Some(3), Some(0)], 15),
+            (vec![None, None, Some(4)], 6),
+            (vec![None, Some(10), None], 0),
+        ] {
+            assert_eq!(rounds_left(&n_done, 10, 2), expected, "{n_done:?}");
         }
     }
 

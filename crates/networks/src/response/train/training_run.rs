@@ -191,7 +191,7 @@ impl<'a> TrainingRun<'a> {
             training_idx: 0,
             n_trainings: 1,
             n_done_elsewhere: 0,
-            n_at_once: 1,
+            rounds_left: None,
         }
     }
 
