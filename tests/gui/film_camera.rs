@@ -2,7 +2,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Pane, PlaybackCommand};
@@ -10,7 +9,7 @@ use impactlab_core::units::UnitSystem;
 use impactlab_draw::scene::{Camera, CameraKey, Follow};
 
 use crate::film::{ask_film, film_of_form};
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, step_until, type_into};
 use crate::pictures::save;
 
 /// The camera of the scene on screen.
@@ -81,19 +80,6 @@ fn the_camera_is_keyed_in_the_scene_and_goes_with_the_time() {
     harness.get_by_label("Move the camera from key to key").click();
     harness.run_steps(3);
     assert!(film_of_form(&harness).keys.is_empty(), "the camera is the one on screen");
-}
-
-/// Types into the field with this name.
-fn type_into(harness: &mut Harness<'_, App>, name: &str, text: &str) {
-    harness.get_by_label(name).focus();
-    harness.run_steps(2);
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    harness.key_press(Key::Delete);
-    harness.run_steps(2);
-    harness.event(Event::Text(text.to_owned()));
-    harness.run_steps(2);
-    harness.key_press(Key::Enter);
-    harness.run_steps(4);
 }
 
 #[test]

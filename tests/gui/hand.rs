@@ -2,13 +2,14 @@
 
 use std::ops::ControlFlow;
 
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{Command, Pane};
+use impactlab::app::{App, Command, Pane};
 use impactlab_reconstruct::evidence::Stated;
 use impactlab_reconstruct::hand::HandMethod;
 use impactlab_study::{HandRequest, Library, Question};
 
-use crate::harness::{apply, open, step_until};
+use crate::harness::{apply, open, step_until, type_into};
 
 #[test]
 fn a_calculation_by_hand_is_answered_and_kept() {
@@ -113,4 +114,36 @@ fn a_yaw_mark_of_the_evidence_gives_its_points() {
     let radius = report.results.iter().find(|of| of.key == "radius_m").expect("a radius");
     // Half a track less is that of the path of the CG.
     assert!((radius.value - 49.25).abs() < 0.2, "{}", radius.value);
+}
+
+/// The points of the mark in the question.
+fn points_m(harness: &Harness<'_, App>) -> Vec<[f64; 2]> {
+    let request = harness.state().state().project.hand.as_ref().expect("a calculation by hand");
+    request.points_m.clone()
+}
+
+/// Asks for the speed of a yaw mark.
+fn ask_for_yaw_mark(harness: &mut Harness<'_, App>) {
+    apply(harness, Command::Show(Pane::Hand));
+    let request = HandRequest::new(HandMethod::YawMark);
+    harness.state_mut().state_mut().project.hand = Some(request);
+    harness.run_steps(3);
+}
+
+/// Points could only be clicked.
+#[test]
+fn points_are_typed_changed_and_removed() {
+    let mut harness = open(&[]);
+    ask_for_yaw_mark(&mut harness);
+    type_into(&mut harness, "x of the next point", "1.5");
+    assert!(points_m(&harness).is_empty(), "its y is not known");
+    type_into(&mut harness, "y of the next point", "-2");
+    assert_eq!(points_m(&harness), [[1.5, -2.0]]);
+    type_into(&mut harness, "y of the next point", "8");
+    type_into(&mut harness, "x of the next point", "3");
+    assert_eq!(points_m(&harness), [[1.5, -2.0], [3.0, 8.0]]);
+    type_into(&mut harness, "y of point 1", "4");
+    harness.get_by_label("Remove point 2").click();
+    harness.run_steps(4);
+    assert_eq!(points_m(&harness), [[1.5, 4.0]]);
 }

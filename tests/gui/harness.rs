@@ -4,7 +4,8 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use egui::{Color32, Context, FullOutput, TexturesDelta};
+use egui::{Color32, Context, Event, FullOutput, Key, Modifiers, TexturesDelta};
+use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
 use image::RgbaImage;
 use impactlab::app::{App, Command, State};
@@ -97,4 +98,17 @@ pub fn apply(harness: &mut Harness<'_, App>, command: Command) {
     let context = harness.ctx.clone();
     harness.state_mut().apply(command, &context);
     harness.step();
+}
+
+/// Types into the field with this name.
+pub fn type_into(harness: &mut Harness<'_, App>, name: &str, text: &str) {
+    harness.get_by_label(name).focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.key_press(Key::Delete);
+    harness.run_steps(2);
+    harness.event(Event::Text(text.to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
 }
