@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::app::force::collision_of;
 use crate::app::state::*;
-use crate::app::{Command, Pane, Source, Workspace, Workspaces};
+use crate::app::{Command, Measure, Measurement, Measuring, Pane, Source, Workspace, Workspaces};
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
@@ -147,4 +147,26 @@ fn what_is_known_of_the_case_follows_every_change_of_it() {
         state.project.simulate.duration_s = State::default().project.simulate.duration_s;
     });
     assert!(is_changed(|state| state.case.file.notes = "seen".to_owned()));
+}
+
+/// A line that was measured in one case was drawn in the film of the next, and the report of that bore the date
+/// that was typed for the first.
+#[test]
+fn what_was_entered_or_made_for_one_case_is_not_in_the_next() {
+    let mut state = State::default();
+    state.view.report.date = "2026-03-01".to_owned();
+    let session = &mut state.session;
+    let points_m = vec![[0.0, 0.0], [3.0, 4.0]];
+    session.scene.measuring.done.push(Measurement { measure: Measure::Length, points_m });
+    session.between.span_s = Some([0.1, 0.2]);
+    session.report.problem = Some("no question has an answer".to_owned());
+    session.other_variants.entry("copy".to_owned()).or_default();
+    let n_cases = session.n_cases;
+    state.new_case();
+    let session = &state.session;
+    assert_eq!(state.view.report.date, "");
+    assert_eq!(session.scene.measuring, Measuring::default());
+    assert_eq!((session.between.span_s, session.report.problem.as_deref()), (None, None));
+    assert!(session.other_variants.is_empty());
+    assert_eq!(session.n_cases, n_cases + 1, "fields keep what was typed into them");
 }

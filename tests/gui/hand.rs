@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Pane};
+use impactlab::app::{App, CaseCommand, Command, Leaving, Pane};
 use impactlab_reconstruct::evidence::Stated;
 use impactlab_reconstruct::hand::HandMethod;
 use impactlab_study::{HandRequest, Library, Question};
@@ -146,4 +146,18 @@ fn points_are_typed_changed_and_removed() {
     harness.get_by_label("Remove point 2").click();
     harness.run_steps(4);
     assert_eq!(points_m(&harness), [[1.5, 4.0]]);
+}
+
+/// A point of which x was typed in one case was completed by y in the next.
+#[test]
+fn what_is_half_typed_does_not_go_into_another_case() {
+    let mut harness = open(&[]);
+    ask_for_yaw_mark(&mut harness);
+    type_into(&mut harness, "x of the next point", "1.5");
+    apply(&mut harness, Command::Case(CaseCommand::LeaveUnasked(Leaving::New)));
+    ask_for_yaw_mark(&mut harness);
+    type_into(&mut harness, "y of the next point", "-2");
+    assert!(points_m(&harness).is_empty(), "its x is of another case");
+    type_into(&mut harness, "x of the next point", "3");
+    assert_eq!(points_m(&harness), [[3.0, -2.0]]);
 }

@@ -77,7 +77,7 @@ pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) 
 fn rename_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     let name = ui.label("Name of the variant");
     let shown = state.case.file.shown.clone();
-    let id = egui::Id::unique("variant name").with(&shown);
+    let id = egui::Id::unique("variant name").with((state.session.n_cases, &shown));
     let mut typed = ui.data(|data| data.get_temp::<String>(id)).unwrap_or(shown);
     let field = ui.text_edit_singleline(&mut typed).labelled_by(name.id);
     let is_entered = field.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

@@ -9,13 +9,16 @@ use crate::app::case::{CaseCommand, OpenCase, VariantCommand};
 use crate::app::command::Command;
 use crate::app::dialog::{Dialog, Purpose};
 use crate::app::found::Found;
+use crate::app::measure::Measuring;
 use crate::app::output::Output;
 use crate::app::panes::Pane;
 use crate::app::project::Project;
 use crate::app::question_job::QuestionJob;
+use crate::app::report::ReportSession;
 use crate::app::source::Source;
 use crate::app::state::{Session, State, Subject};
 use crate::app::tasks::TaskKey;
+use crate::app::widgets::BetweenCursors;
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
@@ -247,9 +250,23 @@ impl State {
         }
     }
 
+    /// Puts another case in the place of the one that is open. What was entered or made for that one alone,
+    /// beside what is saved with it, is not of the other.
+    fn replace_case(&mut self, case: OpenCase) {
+        self.case = case;
+        self.view.report.date.clear();
+        let session = &mut self.session;
+        session.n_cases += 1;
+        session.tasks.stop(&TaskKey::Report);
+        session.report = ReportSession::default();
+        session.scene.measuring = Measuring::default();
+        session.between = BetweenCursors::default();
+        session.other_variants.clear();
+    }
+
     /// Begins a case with nothing in it.
     pub(in crate::app) fn new_case(&mut self) {
-        self.case = OpenCase::default();
+        self.replace_case(OpenCase::default());
         let networks = self.project.networks.clone();
         let mut project = Project { networks, ..Project::default() };
         let (scenario, pulse) = (project.impact.scenario.clone(), project.beside.pulse);
@@ -266,7 +283,7 @@ impl State {
     /// Begins a case with a reconstruction, and shows where its evidence comes from. It asks about no
     /// scenario: one that nobody has entered would be computed, saved and reported beside the evidence.
     pub(in crate::app) fn begin_reconstruction(&mut self) {
-        self.case = OpenCase::default();
+        self.replace_case(OpenCase::default());
         let networks = self.project.networks.clone();
         self.show_project(Project { networks, ..Project::default() });
         self.view.workspaces.show_pane(Pane::Evidence);
@@ -288,7 +305,7 @@ impl State {
 
     /// Puts a case that was read in the place of the one that is open.
     fn take_case(&mut self, (case, problems): (OpenCase, Vec<String>)) {
-        self.case = case;
+        self.replace_case(case);
         problems.into_iter().for_each(|problem| self.say(Severity::Warning, problem));
     }
 

@@ -1,7 +1,7 @@
 //! The “By hand” pane: a method, its inputs with their standard deviations, and what it gives, beside the
 //! reconstruction.
 
-use egui::{Button, ComboBox, Grid, Id, Label, RichText, ScrollArea, Ui};
+use egui::{Button, ComboBox, Grid, Label, RichText, ScrollArea, Ui};
 
 use crate::app::looks;
 use crate::app::panes::PaneContext;
@@ -41,7 +41,7 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let preview = session.reconstruction.preview.as_ref();
             points_ui(ui, request, preview.map(|preview| &preview.evidence));
             Grid::new("hand points").num_columns(4).show(ui, |ui| {
-                let (id, units) = (Id::unique("next point by hand"), view.units);
+                let (id, units) = (ui.id().with("next point by hand"), view.units);
                 let rows = PointRows { id, range: &HAND_COORDINATE, units, is_narrow: false };
                 rows.draw(ui, &mut request.points_m);
             });

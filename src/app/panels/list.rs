@@ -61,7 +61,13 @@ impl Behavior<Pane> for PaneContext<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
         let frame = egui::Frame::new().inner_margin(looks::MARGIN);
         let is_faded = pane.is_answer() && is_late(*pane, self.session);
-        frame.show(ui, |ui| panels::faded_if(ui, is_faded, |ui| (panel(*pane).ui)(ui, self)));
+        let draw = panel(*pane).ui;
+        frame.show(ui, |ui| {
+            // A field of another case has nothing of what was typed into this one.
+            ui.push_id(self.session.n_cases, |ui| {
+                panels::faded_if(ui, is_faded, |ui| draw(ui, self));
+            });
+        });
         UiResponse::None
     }
 

@@ -84,6 +84,8 @@ pub struct Session {
     pub chosen_vehicles: ChosenVehicles,
     /// The cases that the case table lists, in their order.
     pub cases: CaseList,
+    /// How many cases have taken the place of the first one. What is half typed in a field is of one of them.
+    pub n_cases: u64,
     /// The ground of the scene.
     pub ground: GroundSession,
     /// The scene that is shown, and its picture.

@@ -32,12 +32,13 @@ impl State {
         for variant in file.variants.iter().filter(is_other) {
             let (simulate, predict) = questions(variant);
             let answers = other_variants.entry(variant.name.clone()).or_default();
-            if let Some(question) = simulate {
-                answers.simulation.ask(question.clone(), library, wake(context));
+            match simulate {
+                Some(question) => answers.simulation.ask(question.clone(), library, wake(context)),
+                None => answers.simulation.forget(),
             }
-            if let Some(request) = predict {
-                let question = MotionQuestion { request: request.clone() };
-                answers.forecast.ask(question, library, wake(context));
+            match predict.map(|request| MotionQuestion { request: request.clone() }) {
+                Some(question) => answers.forecast.ask(question, library, wake(context)),
+                None => answers.forecast.forget(),
             }
             if answers.is_waiting() {
                 return;

@@ -1,7 +1,7 @@
 //! The rows of a card of the evidence: one for each field, in a grid of four columns, or of two where the
 //! pane is narrow. A field that is empty is not known.
 
-use egui::{ComboBox, Id, Response, Ui};
+use egui::{ComboBox, Response, Ui};
 
 use crate::app::reconstruction::{MarkKey, ReconstructionCommand};
 use crate::app::widgets::{EmptyField, PointRows, optional_quantity};
@@ -159,7 +159,7 @@ impl Fields for FieldRows<'_> {
             self.command = Some(ReconstructionCommand::AddPoints(mark.filter(|_| !is_adding)));
         }
         self.ui.end_row();
-        let id = Id::unique(("next point", self.item));
+        let id = self.ui.id().with(("next point", self.item));
         let (range, units, is_narrow) = (&field.range, self.units, self.is_narrow);
         PointRows { id, range, units, is_narrow }.draw(self.ui, points_m);
     }
