@@ -284,7 +284,7 @@ fn in_unit(value: f64, unit: &str) -> Value {
 mod tests {
     use super::*;
     use crate::facts::FactWriter;
-    use impactlab_core::units::UnitSystem;
+    use impactlab_core::units::{Language, UnitSystem};
 
     fn item(evidence: &str, unit: &'static str, found: f64) -> EvidenceFit {
         EvidenceFit {
@@ -333,5 +333,14 @@ mod tests {
         ];
         assert_eq!(cells, expected.concat());
         assert!(text.rows.iter().all(|row| row.is_warning));
+    }
+
+    /// An effective sample size of 2000 stood beside 1000 particles, and nothing said how that can be.
+    #[test]
+    fn the_effective_sample_size_is_said_to_be_that_of_all_motions() {
+        let term = Term::EffectiveSamples;
+        assert!(term.label(Language::En).contains("all motions"));
+        assert!(term.label(Language::De).contains("aller Bewegungen"));
+        assert!(term.hint().is_some_and(|hint| hint.contains("exceed")));
     }
 }

@@ -385,7 +385,9 @@ terms! {
     HoldsBy: "from", "aus";
     Motions: "simulated motions", "simulierte Bewegungen";
     Particles: "particles", "Partikel";
-    EffectiveSamples: "equivalent independent draws", "effektiver Stichprobenumfang";
+    EffectiveSamples: "equivalent independent draws, of all motions",
+        "effektiver Stichprobenumfang aller Bewegungen",
+        "The particles are taken from all motions by their weights, so that it may exceed their number";
     Courses: "Courses of events that the evidence leaves possible",
         "Geschehensabläufe, die nach den Spuren möglich bleiben";
     IfThis: "If this happened", "Wenn es so war";

@@ -168,7 +168,7 @@ pub(super) const WORDS: Words = Words {
     too_narrow_item: "{name}, in {share} von {n} Fällen{known}",
     particles: "Partikel:",
     simulated_motions: "simulierte Bewegungen:",
-    ess: "effektiver Stichprobenumfang:",
+    ess: "effektiver Stichprobenumfang aller Bewegungen, aus denen die Partikel gezogen sind:",
     log_evidence: "logarithmierte Evidenz:",
     reconstruction_cars: "Rekonstruktion von oben: eine Bewegung mit mittlerer Geschwindigkeit und ihren Reifenspuren, \
         das gestoßene Fahrzeug an deren Ende, über den vorgefundenen Spuren",

@@ -518,7 +518,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("roll angle", "Wankwinkel"),
     ("courses of events", "Geschehensabläufe"),
     ("temperature", "Temperatur"),
-    ("effective sample size", "wirksame Stichprobengröße"),
+    ("effective sample size", "effektiver Stichprobenumfang"),
     (
         "share of the motions in which the cars meet again",
         "Anteil der Bewegungen, in denen sich die Fahrzeuge wieder treffen",

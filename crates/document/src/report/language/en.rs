@@ -162,7 +162,7 @@ pub(super) const WORDS: Words = Words {
     too_narrow_item: "{name}, in {share} of {n} cases{known}",
     particles: "particles:",
     simulated_motions: "simulated motions:",
-    ess: "effective sample size:",
+    ess: "effective sample size of all motions, from which the particles are taken:",
     log_evidence: "log evidence:",
     reconstruction_cars: "Reconstruction from above: a motion of median speed with its tire marks, the struck car at \
         its end, over what was found",
