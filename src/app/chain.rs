@@ -113,7 +113,7 @@ fn force_link(
     let (figure, source, pane) = if let Some(motion) = predicted {
         let format = NumberFormat::english(units);
         let impulse = motion.impulse_n_s.as_ref();
-        let figure = impulse.map(|of| format.estimate_in_words(Quantity::Impulse, of));
+        let figure = impulse.map(|of| format.drawn_in_words(Quantity::Impulse, of));
         let model = motion.answer.report.force_model.clone().unwrap_or_default();
         (figure, format!("force network {model}, interval of 90 %"), Pane::ForcePrediction)
     } else {
@@ -151,12 +151,12 @@ fn outcome_link(
     motion: Option<&MotionAnswer>,
     units: UnitSystem,
 ) -> Link {
-    let length = |m: f64| Quantity::Length.shown(m, units);
+    let format = NumberFormat::english(units);
+    let length = |m: f64| format.rough(Quantity::Length, m);
     let (figure, source, pane) = match (motion, report.and_then(|report| report.end)) {
         (Some(motion), _) => {
             let report = &motion.answer.report;
             let outcome = &report.outcome;
-            let format = NumberFormat::english(units);
             let shown = |end: &Estimate| format.drawn_in_words(Quantity::Length, end);
             let figure = format!("X {}, Y {}", shown(&outcome.x_m), shown(&outcome.y_m));
             let when = match report.known_until_s() < outcome.time_s {

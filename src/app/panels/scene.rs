@@ -26,7 +26,7 @@ use crate::app::state::{Session, State};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, restrictions_ui};
 use impactlab_core::data::Severity;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
 use impactlab_document::scene::{FilmTiming, Scene};
 use impactlab_draw::scene::{CameraKey, Follow, ScenePicture, ViewKind, scene_view_ui};
@@ -168,9 +168,11 @@ fn picture_ui(
 /// Draws when and where the vehicle comes to rest, if it does.
 fn rest_ui(ui: &mut Ui, rest: Option<&RestState>, units: UnitSystem) {
     let Some(rest) = rest else { return };
-    let distance = Quantity::Length.shown(rest.distance_m, units);
-    let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], units);
-    ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
+    let format = NumberFormat::english(units);
+    let time = format.rough(Quantity::Time, rest.time_s);
+    let [distance, x, y] =
+        [rest.distance_m, rest.x_m, rest.y_m].map(|m| format.rough(Quantity::Length, m));
+    ui.label(format!("At rest after {time} and {distance}, at X {x}, Y {y}"));
 }
 
 /// Draws the choice whether the forecast is shown, and the menu of the keys of the camera.

@@ -164,9 +164,9 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 11] {
             0 => NONE.to_owned(),
             n => n.to_string(),
         },
-        of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
-        of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
-        of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
+        of(delta_v.map(|m_s| format.rough(Quantity::Speed, m_s))),
+        of(end.map(|end| format.rough_vector(Quantity::Length, [end.x_m, end.y_m], ["x", "y"]))),
+        of(rest.map(|rest| format.rough(Quantity::Time, rest.time_s))),
         variant.notes.clone(),
     ]
 }

@@ -20,8 +20,9 @@ pub enum Language {
 /// The digits of a number follow its uncertainty:
 ///
 /// - with an interval, two digits of the width of that ([`NumberFormat::estimate`]);
-/// - of draws without an interval, two significant digits, but all of a place or a heading before the
-///   decimal point, which is no better known near zero than far from it ([`NumberFormat::rough`]);
+/// - of draws without an interval, and of a single motion, two significant digits, but all of a place or a
+///   heading before the decimal point, which is no better known near zero than far from it
+///   ([`NumberFormat::rough`]);
 /// - of anything else, four significant digits ([`NumberFormat::value`]).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NumberFormat {
@@ -161,21 +162,17 @@ impl NumberFormat {
         self.local(if is_zero { text.trim_start_matches('-') } else { &text })
     }
 
-    /// A number of draws that has no interval, such as the median of a forecast, see [`NumberFormat`].
+    /// A number of draws that has no interval, such as the median of a forecast, or of a motion of which
+    /// nothing was drawn, see [`NumberFormat`].
     pub fn rough(&self, quantity: Quantity, value_si: f64) -> String {
         let (value, symbol) = self.displayed(quantity, value_si);
-        let is_place = matches!(quantity, Quantity::Length | Quantity::Angle);
-        let number = match is_place && value.abs() >= 100.0 {
-            true => format!("{value:.0}"),
-            false => two_digits(value),
-        };
-        self.with_unit(&number, symbol)
+        self.with_unit(&rough_number(quantity, value), symbol)
     }
 
     /// The same of a vector, such as `3.0 kN s (x 1.1, y 2.8)`.
     pub fn rough_vector(&self, quantity: Quantity, [x, y]: [f64; 2], names: [&str; 2]) -> String {
         let unit = quantity.display_unit(self.units);
-        let [px, py] = [x, y].map(|si| self.local(&two_digits(unit.from_si(si))));
+        let [px, py] = [x, y].map(|si| self.local(&rough_number(quantity, unit.from_si(si))));
         let length = self.rough(quantity, x.hypot(y));
         self.with_components(&length, [&px, &py], names)
     }
@@ -293,6 +290,15 @@ impl NumberFormat {
             Language::En => "to",
             Language::De => "bis",
         }
+    }
+}
+
+/// A number in the unit of its quantity as [`NumberFormat::rough`] writes it.
+fn rough_number(quantity: Quantity, value: f64) -> String {
+    let is_place = matches!(quantity, Quantity::Length | Quantity::Angle);
+    match is_place && value.abs() >= 100.0 {
+        true => format!("{value:.0}"),
+        false => two_digits(value),
     }
 }
 
@@ -451,6 +457,11 @@ mod tests {
         assert_eq!(
             EN.rough_vector(Quantity::Impulse, [1124.0, 2810.0], ["x", "y"]),
             "3.0 kN s (x 1.1, y 2.8)"
+        );
+        // The components of a place had two digits each, beside its distance in full.
+        assert_eq!(
+            EN.rough_vector(Quantity::Length, [163.4, -7.43], ["x", "y"]),
+            "164 m (x 163, y -7.4)"
         );
         let estimate = Estimate::new(30.741, [26.52, 57.24], [26.52, 57.24]);
         let drawn = |of: &Estimate| EN.drawn_in_words(Quantity::Length, of);

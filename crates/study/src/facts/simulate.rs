@@ -49,19 +49,19 @@ impl SimulateReport {
         let surface = self.momentum.as_ref().map(|momentum| momentum.surface());
         facts.extend(surface.map(|surface| Fact::new(Term::MomentumSurface, surface)));
         let delta_v = self.delta_v_m_s;
-        facts
-            .extend(delta_v.map(|value| Fact::vector(Term::DeltaVContact, Quantity::Speed, value)));
+        let speed = |value| Fact::rough_vector(Term::DeltaVContact, Quantity::Speed, value);
+        facts.extend(delta_v.map(speed));
         if let Some(end) = &self.end {
-            facts.push(Fact::vector(Term::EndPosition, Quantity::Length, [end.x_m, end.y_m]));
+            facts.push(Fact::rough_vector(Term::EndPosition, Quantity::Length, [end.x_m, end.y_m]));
             let distance = self.distance_m;
-            facts.extend(distance.map(|m| Fact::number(Term::Distance, Quantity::Length, m)));
-            facts.push(angle(Term::FinalHeading, end.yaw_rad));
+            facts.extend(distance.map(|m| Fact::rough(Term::Distance, Quantity::Length, m)));
+            facts.push(Fact::rough(Term::FinalHeading, Quantity::Angle, end.yaw_rad));
             let turn = self.largest_yaw_change_rad;
-            facts.extend(turn.map(|rad| angle(Term::LargestTurn, rad)));
+            facts.extend(turn.map(|rad| Fact::rough(Term::LargestTurn, Quantity::Angle, rad)));
             match &self.rest {
                 Some(rest) => facts.extend(rest.facts()),
                 None => facts.extend([
-                    Fact::number(Term::FinalSpeed, Quantity::Speed, end.speed_m_s),
+                    Fact::rough(Term::FinalSpeed, Quantity::Speed, end.speed_m_s),
                     Fact::new(Term::AtRest, Value::Term(Term::StillMoving)),
                 ]),
             }
@@ -100,11 +100,6 @@ impl SimulateReport {
         let table = FactTable::new(Term::Marks, rows).with_rows(Term::Wheel);
         table.with_columns(&columns).unless_empty()
     }
-}
-
-/// An angle of a motion, to a tenth of a degree.
-fn angle(term: Term, angle_rad: f64) -> Fact {
-    Fact::new(term, Value::Decimals(Quantity::Angle, angle_rad, 1))
 }
 
 /// What the method of integration of a report is called.
@@ -156,10 +151,10 @@ impl ForceReport {
 impl RestState {
     fn facts(&self) -> [Fact; 4] {
         [
-            Fact::new(Term::AtRestAfter, Value::Rounded(Quantity::Time, self.time_s)),
-            Fact::number(Term::DistanceToRest, Quantity::Length, self.distance_m),
-            Fact::vector(Term::RestPosition, Quantity::Length, [self.x_m, self.y_m]),
-            angle(Term::HeadingAtRest, self.yaw_rad),
+            Fact::rough(Term::AtRestAfter, Quantity::Time, self.time_s),
+            Fact::rough(Term::DistanceToRest, Quantity::Length, self.distance_m),
+            Fact::rough_vector(Term::RestPosition, Quantity::Length, [self.x_m, self.y_m]),
+            Fact::rough(Term::HeadingAtRest, Quantity::Angle, self.yaw_rad),
         ]
     }
 }
@@ -270,4 +265,22 @@ pub(super) fn sensitivity(shares: &[Sensitivity]) -> Option<FactTable> {
     let rows = shares.iter().filter(|share| share.is_clear()).map(row).collect();
     let columns = [Term::Position, Term::Heading];
     FactTable::new(Term::Sensitivity, rows).with_columns(&columns).unless_empty()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::FactWriter;
+    use impactlab_core::units::UnitSystem;
+
+    /// “33.50 m (x 33.44, y -2.037)” was told of one motion, whose end is known to some metres.
+    #[test]
+    fn a_single_motion_is_told_as_roughly_as_a_median_without_an_interval() {
+        let (time_s, yaw_rad, distance_m) = (3.5134, -2.9, 163.96);
+        let rest = RestState { time_s, x_m: 163.44, y_m: -2.037, yaw_rad, distance_m };
+        let table = FactTable::new(Term::Motion, rest.facts().to_vec());
+        let text = table.to_text(&FactWriter::english(UnitSystem::Si));
+        let values: Vec<&str> = text.rows.iter().map(|row| row.cells[1].as_str()).collect();
+        assert_eq!(values, ["3.5 s", "164 m", "163 m (x 163, y -2.0)", "-166 deg"]);
+    }
 }

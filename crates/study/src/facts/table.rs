@@ -163,6 +163,11 @@ impl Fact {
         Self::new(term, Value::Estimate(quantity, estimate.clone()))
     }
 
+    /// A vector of something that has no interval.
+    pub(super) fn rough_vector(term: Term, quantity: Quantity, components_si: [f64; 2]) -> Self {
+        Self::new(term, Value::RoughVector(quantity, components_si, ["x", "y"]))
+    }
+
     /// A vector.
     pub(super) fn vector(term: Term, quantity: Quantity, components_si: [f64; 2]) -> Self {
         Self::new(term, Value::Vector(quantity, components_si, ["x", "y"]))

@@ -35,7 +35,7 @@ pub fn modes_ui(
             let chance = format.chance(mode.probability, Some(mode.standard_error));
             ui.strong(chance).on_hover_text("One standard error");
             if let Some(speed) = mode.quantities.first() {
-                let text = format.estimate_in_words(speed.quantity(), &speed.estimate);
+                let text = format.drawn_in_words(speed.quantity(), &speed.estimate);
                 let car = if report.kind.is_collision() { "struck car" } else { "car" };
                 ui.label(format!("{car} {text}")).on_hover_text("Median and 90 %");
             }

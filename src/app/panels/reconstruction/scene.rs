@@ -316,9 +316,7 @@ fn play_ui(
         let modes = &answer.answer.report.modes;
         if modes.len() > 1 {
             let all = "all courses of events".to_owned();
-            let text = |idx: usize| {
-                modes.get(idx).map(|of| format!("{} {}", percent(of.probability), of.name))
-            };
+            let text = |idx: usize| modes.get(idx).map(ReconstructedPaths::course_title);
             let shown = mode.and_then(text).unwrap_or_else(|| all.clone());
             let list = ComboBox::from_id_salt("course of events").selected_text(shown).truncate();
             let list = list.width(ui.available_width().min(260.0));
