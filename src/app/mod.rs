@@ -368,13 +368,22 @@ impl App {
             return;
         }
         let (variants, contents) = (self.state.answered_variants(), self.state.contents(chain));
-        let State { project, view, session, .. } = &mut self.state;
+        let State { project, case, view, session } = &mut self.state;
         let shown = view.workspaces.shown;
         let empty = Tree::empty(egui::Id::unique("panes"));
         let mut layout = std::mem::replace(view.workspaces.layout_mut(shown), empty);
         let between = std::mem::take(&mut session.between);
-        let mut panes =
-            panes::PaneContext { project, view, session, between, variants, contents, commands };
+        let expert = &mut case.file.expert;
+        let mut panes = panes::PaneContext {
+            project,
+            view,
+            session,
+            between,
+            variants,
+            expert,
+            contents,
+            commands,
+        };
         central.show(ui, |ui| layout.ui(&mut panes, ui));
         panes.between.ui(ui);
         panes.session.between = panes.between;

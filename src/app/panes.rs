@@ -8,6 +8,7 @@ use crate::app::project::Project;
 use crate::app::state::{Session, View};
 use crate::app::variants::AnsweredVariant;
 use crate::app::widgets::BetweenCursors;
+use impactlab_study::case_file::Expert;
 
 /// The context in which the panes are drawn: the parts of the state, and the list of commands.
 pub struct PaneContext<'a> {
@@ -21,6 +22,8 @@ pub struct PaneContext<'a> {
     pub between: BetweenCursors,
     /// The variants of the case with their answers.
     pub variants: Vec<AnsweredVariant>,
+    /// Who gives the opinion of the case, and for whom.
+    pub expert: &'a mut Expert,
     /// What the case consists of.
     pub contents: Vec<ContentsEntry>,
     /// The commands that the panes add.

@@ -16,7 +16,7 @@ use impactlab_study::case_file::CaseFile;
 use impactlab_study::{Library, MotionSource};
 use tempfile::TempDir;
 
-use crate::harness::{apply, open_at, step_until};
+use crate::harness::{apply, open_at, step_until, type_into};
 use crate::looks::collisions;
 use crate::pictures::save;
 
@@ -156,4 +156,14 @@ fn a_report_is_cancelled_and_none_is_made_of_nothing() {
     harness.run_steps(3);
     assert!(state(&harness).session.report.asks_nothing);
     assert!(harness.query_by_label_contains("asks nothing yet").is_some());
+}
+
+/// Who signs was asked under *Name…* in the bar of the case, where nobody looked for it.
+#[test]
+fn who_gives_the_opinion_is_entered_where_the_report_is_made() {
+    let mut harness = opened([1440.0, 900.0]);
+    type_into(&mut harness, "Expert", "J. Doe, P.E.");
+    let expert = &state(&harness).case.file.expert;
+    assert_eq!(expert.name.as_deref(), Some("J. Doe, P.E."));
+    assert!(state(&harness).is_case_changed());
 }

@@ -8,7 +8,6 @@ use crate::app::command::Command;
 use crate::app::keyboard;
 use crate::app::state::State;
 use crate::app::tasks::TaskKey;
-use impactlab_study::case_file::Expert;
 
 /// Draws the name of the case, whether it is saved, and its variants.
 pub fn case_bar_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
@@ -96,20 +95,4 @@ fn rename_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     }
     let notes = ui.label("Notes of the case");
     ui.text_edit_multiline(&mut state.case.file.notes).labelled_by(notes.id);
-    ui.separator();
-    expert_ui(ui, &mut state.case.file.expert);
-}
-
-/// Draws the fields for who gives the opinion, and for whom; an empty one says nothing.
-fn expert_ui(ui: &mut Ui, expert: &mut Expert) {
-    let Expert { name, qualifications, instruction } = expert;
-    let fields =
-        [("Expert", name), ("Qualifications", qualifications), ("Instruction", instruction)];
-    for (label, text) in fields {
-        let label = ui.label(label);
-        let mut typed = text.clone().unwrap_or_default();
-        if ui.text_edit_singleline(&mut typed).labelled_by(label.id).changed() {
-            *text = (!typed.is_empty()).then_some(typed);
-        }
-    }
 }

@@ -17,6 +17,7 @@ use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Language, Paper};
 use impactlab_draw::theme;
+use impactlab_study::case_file::Expert;
 
 /// Languages with their names in themselves.
 const LANGUAGES: [(Language, &str); 2] = [(Language::En, "English"), (Language::De, "Deutsch")];
@@ -25,9 +26,11 @@ const PAPERS: [(Paper, &str); 2] = [(Paper::A4, "A4"), (Paper::Letter, "Letter")
 
 /// Draws the settings, the button that makes the report, and its sections.
 pub fn report_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, commands, .. } = pane;
+    let PaneContext { view, session, expert, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         settings_ui(ui, &mut view.report, view.units);
+        ui.add_space(looks::PART);
+        expert_ui(ui, expert);
         ui.add_space(looks::PART);
         run_ui(ui, session, &view.report, commands);
         let Some(made) = &session.report.made else { return };
@@ -66,6 +69,20 @@ fn settings_ui(ui: &mut Ui, view: &mut ReportView, units: UnitSystem) {
     problem_line_ui(ui, view.report_date().err().as_deref());
     ui.checkbox(&mut view.shown_variant_only, "Only the variant that is shown")
         .on_hover_text("Otherwise the report tells of all variants of the case");
+}
+
+/// Draws the fields for who gives the opinion, and for whom; an empty one says nothing.
+fn expert_ui(ui: &mut Ui, expert: &mut Expert) {
+    let Expert { name, qualifications, instruction } = expert;
+    let fields =
+        [("Expert", name), ("Qualifications", qualifications), ("Instruction", instruction)];
+    for (label, text) in fields {
+        let label = ui.label(label);
+        let mut typed = text.clone().unwrap_or_default();
+        if ui.text_edit_singleline(&mut typed).labelled_by(label.id).changed() {
+            *text = (!typed.is_empty()).then_some(typed);
+        }
+    }
 }
 
 fn choice_ui<T: Copy + PartialEq>(ui: &mut Ui, id: &str, chosen: &mut T, all: &[(T, &str)]) {
