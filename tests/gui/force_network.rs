@@ -136,7 +136,7 @@ fn a_case_is_predicted_edited_and_left_open() {
     );
     edit_collision(&mut harness, |numbers| numbers.mass_kg[1] = 9000.0);
     step_until(&mut harness, "a forecast far off", is_forecast_current);
-    harness.get_by_label_contains("outside the domain: mass of the striking vehicle [kg] 9000");
+    harness.get_by_label_contains("outside the domain: mass of the striking vehicle 9000 kg");
 
     // An unknown contact point is averaged over, and random curves are drawn.
     apply(&mut harness, Command::PredictCase);

@@ -6,7 +6,7 @@ use crate::app::command::Command;
 use crate::app::looks::{self, Icon};
 use crate::app::widgets::assumptions_ui;
 use impactlab_core::uncertainty::{Caveat, CaveatQuantity, Caveats};
-use impactlab_core::units::{NumberFormat, UnitSystem, significant};
+use impactlab_core::units::{NumberFormat, UnitSystem, three_digits};
 use impactlab_draw::theme;
 
 /// Opacity of the fill of a chip, 0 to 1.
@@ -72,11 +72,11 @@ fn chip_ui(ui: &mut Ui, caveat: &Caveat, units: UnitSystem) {
 /// What a chip says: kind, quantity and value.
 fn chip_text(caveat: &Caveat, units: UnitSystem) -> String {
     let label = caveat.kind.label();
-    match caveat.quantity_in(&NumberFormat::english(units)) {
+    let format = NumberFormat::english(units);
+    match caveat.quantity_in(&format) {
         Some(CaveatQuantity { name, unit, value, .. }) => {
-            let is_count = unit.is_empty() && value.fract() == 0.0;
-            let value = if is_count { value.to_string() } else { significant(value) };
-            format!("{label}: {name}{unit} {value}")
+            let symbol = unit.trim_matches([' ', '[', ']']);
+            format!("{label}: {name} {}", format.with_unit(&three_digits(value), symbol))
         }
         None => label.to_owned(),
     }
@@ -94,8 +94,8 @@ mod tests {
         let caveat =
             Caveat::new(CaveatKind::NotAtRest, "").with_value("speed at the end [m/s]", 10.0);
         let text = |units| chip_text(&caveat, units);
-        assert_eq!(text(UnitSystem::Si), "not at rest: speed at the end [km/h] 36.00");
-        assert_eq!(text(UnitSystem::Us), "not at rest: speed at the end [mph] 22.37");
+        assert_eq!(text(UnitSystem::Si), "not at rest: speed at the end 36 km/h");
+        assert_eq!(text(UnitSystem::Us), "not at rest: speed at the end 22.4 mph");
         let caveat =
             Caveat::new(CaveatKind::SeveralCourses, "").with_value("courses of events", 7.0);
         let text = chip_text(&caveat, UnitSystem::Si);
