@@ -149,6 +149,34 @@ fn a_crash_test_gives_the_stiffness_of_its_front() {
     assert!(!again.unwrap().status.success(), "nothing is replaced unasked");
 }
 
+/// Evidence that was written by hand was replaced by that of a recorder, which has the record alone.
+#[test]
+fn evidence_that_was_written_or_completed_by_hand_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str| folder.path().join(name);
+    fs::write(file("report.csv"), REPORT).unwrap();
+    let (report, out) = (file("report.csv"), file("out"));
+    let evidence = out.join("evidence.toml");
+    let import = ["import", text(&report), "--overwrite", "--out", text(&out)];
+    fs::create_dir(&out).unwrap();
+    fs::copy(EVIDENCE, &evidence).unwrap();
+    let refused = |what: &str| {
+        let before = fs::read(&evidence).unwrap();
+        let output = program().args(import).output().unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{what}: {error}");
+        assert!(error.contains("evidence.toml: was not written by an earlier run"), "{error}");
+        assert!(fs::read(&evidence).unwrap() == before, "{what}: it is as it was");
+    };
+    refused("by hand");
+    fs::remove_file(&evidence).unwrap();
+    answer(&import);
+    answer(&import);
+    let written = fs::read_to_string(&evidence).unwrap();
+    fs::write(&evidence, format!("# Completed by hand.\n{written}")).unwrap();
+    refused("completed");
+}
+
 #[test]
 fn a_motion_goes_out_as_parquet_and_comes_back() {
     let folder = tempfile::tempdir().unwrap();

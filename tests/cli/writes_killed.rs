@@ -66,7 +66,8 @@ fn writes_a_folder_over_and_over() {
 
 /// Files of which each second run has some that the others have not.
 fn write_folder(folder: &Path, n: usize) {
-    let output = OutputFolder::begin(folder, Existing::Replace, &["common.txt"]).unwrap();
+    let output =
+        OutputFolder::begin(folder, Existing::Replace, &["common.txt"], Vec::new()).unwrap();
     for name in ["common.txt", "other.txt", ["even.txt", "odd.txt"][n % 2]] {
         fs::write(output.staging().join(name), n.to_string()).unwrap();
     }

@@ -192,7 +192,7 @@ fn a_second_writer_is_told_who_the_first_one_is() {
 /// Writes a folder as a command does.
 fn fill(folder: &Path, existing: Existing, files: &[(&str, &str)]) -> Result<(), String> {
     let known: Vec<&str> = files.iter().take(1).map(|(name, _)| *name).collect();
-    let begun = OutputFolder::begin(folder, existing, &known);
+    let begun = OutputFolder::begin(folder, existing, &known, Vec::new());
     let output = begun.map_err(|error| error_chain(&error))?;
     for (name, text) in files {
         fs::write(output.staging().join(name), text).unwrap();
@@ -224,6 +224,8 @@ fn an_output_folder_holds_one_run_and_what_is_not_ours() {
     // The user's own file, and one of ours that the user has changed.
     fs::write(out.join("notes.txt"), "mine").unwrap();
     fs::write(out.join("c.csv"), "edited").unwrap();
+    let edited = fill(&out, Existing::Replace, &[("a.csv", "4"), ("c.csv", "5")]).unwrap_err();
+    assert!(edited.contains("c.csv: was not written by an earlier run, or has been edited"));
     fill(&out, Existing::Replace, &[("a.csv", "4")]).unwrap();
     assert_eq!(names(&out), ["a.csv", "c.csv", "manifest.json", "notes.txt"]);
     assert_eq!(fs::read_to_string(out.join("a.csv")).unwrap(), "4");
@@ -238,8 +240,11 @@ fn a_foreign_file_is_not_replaced_unasked_and_a_foreign_manifest_is_not_obeyed()
     fs::write(out.join("b.csv"), "theirs").unwrap();
     // `b.csv` is not known beforehand: it is found before anything is moved.
     let refused = fill(&out, Existing::Refuse, &[("a.csv", "1"), ("b.csv", "2")]).unwrap_err();
-    assert!(refused.contains("b.csv: exists already"), "{refused}");
+    assert!(refused.contains("b.csv: was not written by an earlier run"), "{refused}");
+    let refused = fill(&out, Existing::Replace, &[("a.csv", "1"), ("b.csv", "2")]).unwrap_err();
+    assert!(refused.contains("not even with --overwrite"), "{refused}");
     assert_eq!(names(&out), ["b.csv"]);
+    assert_eq!(fs::read_to_string(out.join("b.csv")).unwrap(), "theirs");
 
     fs::write(&victim, "kept").unwrap();
     let digest = "79f076abdd19a752db7267bfff2f9022161d120dea919fdaca2ffdfc24ca8c96";
@@ -250,24 +255,30 @@ fn a_foreign_file_is_not_replaced_unasked_and_a_foreign_manifest_is_not_obeyed()
         fs::write(out.join("manifest.json"), text).unwrap();
         fill(&out, Existing::Replace, &[("a.csv", "1")]).unwrap();
         assert_eq!(fs::read_to_string(&victim).unwrap(), "kept", "{name}");
+        fs::remove_file(out.join("a.csv")).unwrap();
     }
     fs::write(out.join("manifest.json"), "{}").unwrap();
-    let refused = fill(&out, Existing::Refuse, &[("z.csv", "1")]).unwrap_err();
-    assert!(refused.contains("manifest.json: exists already"), "{refused}");
+    for existing in [Existing::Refuse, Existing::Replace] {
+        let refused = fill(&out, existing, &[("z.csv", "1")]).unwrap_err();
+        assert!(refused.contains("manifest.json: was not written by"), "{refused}");
+        assert_eq!(fs::read_to_string(out.join("manifest.json")).unwrap(), "{}");
+    }
 }
 
 #[test]
 fn a_folder_is_written_by_one_process_at_a_time_and_left_as_it_was_by_a_failure() {
     let here = folder();
     let out = here.path().join("out");
-    let first = OutputFolder::begin(&out, Existing::Refuse, &[]).unwrap();
-    let second = OutputFolder::begin(&out, Existing::Replace, &[]).unwrap_err().to_string();
+    let first = OutputFolder::begin(&out, Existing::Refuse, &[], Vec::new()).unwrap();
+    let second =
+        OutputFolder::begin(&out, Existing::Replace, &[], Vec::new()).unwrap_err().to_string();
     assert!(second.contains(&format!("process {}", std::process::id())), "{second}");
     fs::write(first.staging().join("a.csv"), "half").unwrap();
     drop(first);
     assert!(!out.exists(), "a folder that was made for nothing is removed");
 
     fs::write(&out, "a file").unwrap();
-    let refused = OutputFolder::begin(&out, Existing::Replace, &[]).unwrap_err().to_string();
+    let refused =
+        OutputFolder::begin(&out, Existing::Replace, &[], Vec::new()).unwrap_err().to_string();
     assert!(refused.contains("is no folder"), "{refused}");
 }

@@ -54,8 +54,8 @@ pub(super) fn make_ground(
     let CloudForm { path, pixel_m, unit, folder } = form;
     let format = CloudFormat::from_path(path);
     let format = format.ok_or_else(|| format!("{}: is no point cloud", path.display()))?;
-    let output = OutputFolder::begin(Path::new(folder.trim()), Existing::Refuse, &[])
-        .and_then(|output| output.protecting(vec![path.clone()]))
+    let inputs = vec![path.clone()];
+    let output = OutputFolder::begin(Path::new(folder.trim()), Existing::Refuse, &[], inputs)
         .map_err(|error| error_chain(&error))?;
     let options = CloudOptions { pixel_m: *pixel_m, unit: *unit, ..CloudOptions::default() };
     let made = match import_cloud(path, format, &options, output.staging(), report) {

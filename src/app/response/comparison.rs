@@ -152,7 +152,7 @@ pub fn write_comparison_folder(
     existing: Existing,
     report: &Answer<CompareReport>,
 ) -> Result<(), DataError> {
-    let output = OutputFolder::begin(folder, existing, &CompareReport::FILES)?;
+    let output = OutputFolder::begin(folder, existing, &CompareReport::FILES, Vec::new())?;
     report.write(output.staging())?;
     let Provenance { seed, model_digests: models, .. } = report.provenance_with_seed();
     output.finish(RunRecord { seed, models, ..RunRecord::default() })

@@ -156,7 +156,7 @@ impl Console<'_> {
         existing: Existing,
     ) -> Result<(OutputFolder, impactlab_core::data::write::RunRecord), CliError> {
         let (record, read) = self.targets.run_record();
-        Ok((OutputFolder::begin(folder, existing, &[])?.protecting(read)?, record))
+        Ok((OutputFolder::begin(folder, existing, &[], read)?, record))
     }
 
     /// Answers a question and writes files of the answer into a folder, which is prepared before
@@ -177,11 +177,10 @@ impl Console<'_> {
         let Some((folder, existing, known)) = out.filter(|_| !self.print_request) else {
             return self.ask(question);
         };
-        let output = OutputFolder::begin(folder, existing, known)?;
         self.targets.expect_folder();
         let request: Request = question.clone().into();
         let read = [&request.files_read()[..], self.targets.made_from()].concat();
-        let output = output.protecting(read)?;
+        let output = OutputFolder::begin(folder, existing, known, read)?;
         let answer = self.answer(question)?;
         self.targets.answered(&write(&output, &answer)?);
         let (record, _) = self.targets.run_record();

@@ -32,6 +32,16 @@ pub enum WriteError {
         /// The folder.
         path: PathBuf,
     },
+    /// A folder of results holds a file of a name that is to be written, and it is none of an earlier run.
+    #[error(
+        "{}: was not written by an earlier run, or has been edited since, so it is not replaced, not \
+         even with --overwrite; move it away or choose another folder",
+        path.display()
+    )]
+    NotOfRun {
+        /// The file.
+        path: PathBuf,
+    },
     /// The path leads to something that cannot be replaced by a file.
     #[error("{}: is a {kind}, expected a file or a name that is not taken", path.display())]
     NotAFile {

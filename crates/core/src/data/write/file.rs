@@ -98,6 +98,11 @@ impl Target {
         Ok(Self { path, folder, replaced })
     }
 
+    /// Whether there is no file yet.
+    pub(super) fn is_new(&self) -> bool {
+        self.replaced.is_none()
+    }
+
     /// An error of the operating system with this file.
     fn to_error(&self) -> impl FnOnce(io::Error) -> WriteError {
         WriteError::io(&self.path)

@@ -30,8 +30,6 @@ pub struct OutputFolder {
     existing: Existing,
     started: SystemTime,
     staging: TempDir,
-    /// Names of files that will be written, as far as they were known at the beginning.
-    known: Vec<String>,
     /// Files that the results are computed from.
     inputs: Vec<PathBuf>,
     lock: WriterLock,
@@ -65,13 +63,22 @@ impl OutputFolder {
     /// Prepares a folder, which is made if it is not there. To be called before the work begins,
     /// so that nothing is computed that cannot be written.
     ///
-    /// - `existing`: what happens to files of an earlier run and to others of the same names;
-    /// - `known`: names that will be written, as far as they are known yet.
+    /// - `existing`: what happens to files of an earlier run. What that run has not written, or
+    ///   somebody has changed since, is never replaced: nobody has named it, as the folder was named;
+    /// - `known`: names that will be written, as far as they are known yet;
+    /// - `inputs`: files that the results are computed from, which are neither replaced nor removed as
+    ///   those of an earlier run.
     ///
     /// # Errors
     /// [`WriteError`] within [`DataError::Write`]: files of an earlier run that must not be
-    /// replaced, a folder that another process is writing, and the errors of the operating system.
-    pub fn begin(folder: &Path, existing: Existing, known: &[&str]) -> Result<Self, DataError> {
+    /// replaced, files of the same names that are none of it, inputs, a folder that another process
+    /// is writing, and the errors of the operating system.
+    pub fn begin(
+        folder: &Path,
+        existing: Existing,
+        known: &[&str],
+        inputs: Vec<PathBuf>,
+    ) -> Result<Self, DataError> {
         if folder.exists() && !folder.is_dir() {
             return Err(WriteError::NotAFolder { path: folder.to_owned() }.into());
         }
@@ -81,31 +88,21 @@ impl OutputFolder {
         let made = MadeFolders::make(folder).map_err(WriteError::io(folder))?;
         let lock = WriterLock::lock_folder(folder)?;
         sweep_staging(folder);
-        for name in known.iter().chain([&MANIFEST_FILE]) {
-            Target::find(&folder.join(name), existing)?;
+        let earlier = earlier_files(folder);
+        let names = || known.iter().copied().chain([MANIFEST_FILE]);
+        let of_earlier = earlier.iter().flatten().map(|file| file.name.as_str());
+        for name in names().chain(of_earlier) {
+            check_inputs(&folder.join(name), &inputs)?;
+        }
+        for name in names() {
+            target_in(folder, name, earlier.as_deref())?;
         }
         let mut builder = Builder::new();
         let [prefix, suffix] = STAGING;
         let staging = builder.prefix(prefix).suffix(suffix).tempdir_in(folder);
         let staging = staging.map_err(WriteError::io(folder))?;
-        let known = known.iter().map(|&name| name.to_owned()).collect();
-        let (folder, started, inputs) = (folder.to_owned(), SystemTime::now(), Vec::new());
-        Ok(Self { folder, existing, started, staging, known, inputs, lock, _made: made })
-    }
-
-    /// The same folder, in which files that the results are computed from are neither replaced nor
-    /// removed as those of an earlier run.
-    ///
-    /// # Errors
-    /// [`WriteError::IsInput`] within [`DataError::Write`] for one that would be.
-    pub fn protecting(mut self, inputs: Vec<PathBuf>) -> Result<Self, DataError> {
-        let earlier = earlier_files(&self.folder).unwrap_or_default();
-        let names = self.known.iter().chain(earlier.iter().map(|file| &file.name));
-        for name in names.map(String::as_str).chain([MANIFEST_FILE]) {
-            check_inputs(&self.folder.join(name), &inputs)?;
-        }
-        self.inputs = inputs;
-        Ok(self)
+        let (folder, started) = (folder.to_owned(), SystemTime::now());
+        Ok(Self { folder, existing, started, staging, inputs, lock, _made: made })
     }
 
     /// The staging folder, into which the files are to be written.
@@ -128,13 +125,13 @@ impl OutputFolder {
         let (folder, existing) = (&self.folder, self.existing);
         let to_error = || WriteError::io(folder);
         let files = staged_files(self.staging.path()).map_err(to_error())?;
+        let earlier = earlier_files(folder);
         let mut targets = Vec::with_capacity(files.len());
         for file in &files {
-            let path = folder.join(&file.name);
-            check_inputs(&path, &self.inputs)?;
-            targets.push(Target::find(&path, existing)?);
+            check_inputs(&folder.join(&file.name), &self.inputs)?;
+            targets.push(target_in(folder, &file.name, earlier.as_deref())?);
         }
-        let earlier = earlier_files(folder).unwrap_or_default();
+        let earlier = earlier.unwrap_or_default();
         let manifest_path = folder.join(MANIFEST_FILE);
         let mut manifest = Manifest::new(run, self.started, files);
 
@@ -165,6 +162,25 @@ fn staged_files(staging: &Path) -> io::Result<Vec<FileDigest>> {
     }
     files.sort_by(|a, b| a.name.cmp(&b.name));
     Ok(files)
+}
+
+/// Where a file of the folder goes. One that is there already has to be as an earlier run has left it.
+fn target_in(
+    folder: &Path,
+    name: &str,
+    earlier: Option<&[FileDigest]>,
+) -> Result<Target, WriteError> {
+    let path = folder.join(name);
+    let target = Target::find(&path, Existing::Replace)?;
+    let is_own =
+        earlier.is_some_and(|earlier| name == MANIFEST_FILE || is_as_left(&path, name, earlier));
+    if target.is_new() || is_own { Ok(target) } else { Err(WriteError::NotOfRun { path }) }
+}
+
+/// Whether a file is one of an earlier run, and nobody has changed it since.
+fn is_as_left(path: &Path, name: &str, earlier: &[FileDigest]) -> bool {
+    earlier.iter().any(|file| file.name == name)
+        && FileDigest::from_file(name, path).is_ok_and(|found| earlier.contains(&found))
 }
 
 fn write_manifest(path: &Path, existing: Existing, manifest: &Manifest) -> Result<(), DataError> {
