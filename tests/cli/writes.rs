@@ -12,7 +12,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::force::train;
-use crate::program::{SCENARIO, TRAJECTORIES, json, kill_at_checkpoint, ok, program};
+use crate::program::{SCENARIO, TRAJECTORIES, json, kill_at_checkpoint, ok, program, text};
 
 /// What a command that must fail prints at its end.
 fn error(command: &mut Command) -> String {
@@ -100,6 +100,29 @@ fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     let mut left = [&written[..], &["notes.txt"]].concat();
     left.sort_unstable();
     assert_eq!(names(&out), left, "the samples of the run before are gone");
+}
+
+/// A folder of results goes to others; it said the home folder of who made it.
+#[test]
+fn a_folder_of_results_names_no_folder_of_this_machine() {
+    let folder = TempDir::new().unwrap();
+    let scenario = folder.path().join("own scenario.toml");
+    fs::copy(SCENARIO, &scenario).unwrap();
+    let motion = ["predict", "--draws", "2", "--duration", "0.5", "--scenario", text(&scenario)];
+    let force = ["predict", "force", "--scenario", text(&scenario)];
+    for args in [&motion[..], &force] {
+        let out = folder.path().join(format!("results of {}", args[1]));
+        ok(command(args, &out).output().unwrap());
+        for (name, bytes) in contents(&out) {
+            let said = String::from_utf8_lossy(&bytes);
+            assert!(!said.contains(text(folder.path())), "{args:?}: {name} says where it is");
+        }
+        let manifest = json(&fs::read_to_string(out.join("manifest.json")).unwrap());
+        assert_eq!(manifest["command"][0], "impactlab");
+        assert_eq!(manifest["command"][args.len()], "own scenario.toml");
+        assert_eq!(manifest["inputs"][0]["name"], "own scenario.toml");
+        assert!(manifest["request"].to_string().contains("\"own scenario.toml\""), "{manifest}");
+    }
 }
 
 #[test]

@@ -94,7 +94,8 @@ pub(in crate::cli) fn run(
     let out = args.out.as_deref();
     let into = out.map(|folder| (folder, args.overwrite.into(), &KNOWN_FILES[..]));
     let answer = console.ask_into(&request, into, |output, answer| {
-        let printed = PrintedForce { report: &answer.report, out };
+        // What lies in the folder does not say where the folder is.
+        let printed = PrintedForce { report: &answer.report, out: None };
         write_force_prediction(output.staging(), answer, &printed)?;
         Ok(answer.report.provenance.clone())
     })?;

@@ -207,7 +207,9 @@ pub(in crate::cli) fn run(
         let wanted = MotionFiles { folder: staging, window_s: args.window, units };
         let names = write_motion_prediction(&wanted, answer)?;
         files = names.iter().map(|name| output.path_of(name)).collect();
-        let printed = PrintedMotion { report: &answer.report, files: &files };
+        // What lies in the folder does not say where the folder is.
+        let named: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
+        let printed = PrintedMotion { report: &answer.report, files: &named };
         let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
         let outcome = staging.join("outcome.json");
         write_atomically(&outcome, Existing::Refuse, |out| out.write_all(&json))?;

@@ -5,26 +5,10 @@ use std::path::{Component, Path, PathBuf};
 
 use serde_json::Value;
 
+pub use impactlab_core::data::write::replace_strings;
+
 /// Beginnings of a path that is relative to the folder of the case.
 const RELATIVE: [&str; 2] = ["./", "../"];
-
-/// Replaces strings in a value, at any depth; keys stay.
-///
-/// - `change`: the new string; `None` keeps the old one.
-pub fn replace_strings(value: &mut Value, change: &impl Fn(&str) -> Option<String>) {
-    match value {
-        Value::String(text) => {
-            if let Some(new) = change(text) {
-                *text = new;
-            }
-        }
-        Value::Array(values) => values.iter_mut().for_each(|value| replace_strings(value, change)),
-        Value::Object(fields) => {
-            fields.values_mut().for_each(|value| replace_strings(value, change));
-        }
-        Value::Null | Value::Bool(_) | Value::Number(_) => {}
-    }
-}
 
 /// Makes absolute every string of a value that is a path as the file of a case in `folder` says it.
 pub fn begin_paths_at(value: &mut Value, folder: &Path) {
@@ -112,10 +96,8 @@ mod tests {
     }
 
     #[test]
-    fn strings_are_replaced_at_any_depth_and_keys_are_not() {
-        let mut value = serde_json::json!({"/a": ["/a", {"b": "/a"}, 1, null]});
-        replace_strings(&mut value, &|text| (text == "/a").then(|| "./a".to_owned()));
-        assert_eq!(value, serde_json::json!({"/a": ["./a", {"b": "./a"}, 1, null]}));
+    fn relative_paths_are_no_absolute_ones() {
+        let value = serde_json::json!({"/a": ["./a", {"b": "./a"}, 1, null]});
         assert!(absolute_paths(&value).is_empty());
     }
 

@@ -10,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::data::write::FileDigest;
+use crate::data::write::machine::{replace_strings, without_machine};
 
 /// Name of the manifest in its folder.
 pub const MANIFEST_FILE: &str = "manifest.json";
@@ -68,6 +69,26 @@ pub struct Manifest {
     pub files: Vec<FileDigest>,
 }
 
+impl RunRecord {
+    /// The same without what it says of the machine, as a folder of results goes to others.
+    fn without_machine(mut self) -> Self {
+        let working_folder = std::env::current_dir().ok();
+        let named = |text: &str| without_machine(text, working_folder.as_deref());
+        let rename = |text: &mut String| {
+            if let Some(name) = named(text) {
+                *text = name;
+            }
+        };
+        // Where a program lies is not what it is; the version says that.
+        self.command.iter_mut().take(1).for_each(|program| *program = PROGRAM.to_owned());
+        self.command.iter_mut().skip(1).for_each(rename);
+        self.inputs.iter_mut().for_each(|input| rename(&mut input.name));
+        self.models.iter_mut().for_each(|model| rename(&mut model.name));
+        replace_strings(&mut self.request, &named);
+        self
+    }
+}
+
 impl Manifest {
     /// The manifest of a run that began at `started`.
     pub(super) fn new(run: RunRecord, started: SystemTime, files: Vec<FileDigest>) -> Self {
@@ -77,7 +98,7 @@ impl Manifest {
             complete: true,
             started: humantime::format_rfc3339_seconds(started).to_string(),
             seconds: started.elapsed().map_or(0.0, |elapsed| elapsed.as_secs_f64()),
-            run,
+            run: run.without_machine(),
             files,
         }
     }

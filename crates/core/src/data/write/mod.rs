@@ -13,6 +13,7 @@ mod file;
 mod folder;
 mod inputs;
 mod lock;
+mod machine;
 mod manifest;
 mod parquet_series;
 mod series;
@@ -24,6 +25,7 @@ pub use file::{Existing, check_target, write_atomically};
 pub use folder::OutputFolder;
 pub use inputs::check_inputs;
 pub use lock::WriterLock;
+pub use machine::replace_strings;
 pub use manifest::{MANIFEST_FILE, Manifest, ModelDigest, RunRecord};
 pub use parquet_series::write_restricted_series_parquet;
 pub use series::{
