@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 
 use impactlab_core::data::write::WriterLock;
 use impactlab_core::data::{CrashTest, Existing};
-use impactlab_study::case_file::{CaseError, CaseFile, Change, UsedFile, Variant, pack, unpack};
+use impactlab_study::case_file::{
+    CaseError, CaseFile, Change, UsedFile, UsedModel, Variant, pack, unpack,
+};
 use impactlab_study::{
-    CheckRequest, Drive, Event, ImpactRequest, Library, MotionSource, Report, Request,
-    ScenarioChoice, SeriesFile, SimulateRequest,
+    CheckRequest, Drive, Event, EvidenceChoice, ImpactRequest, Library, MotionSource,
+    ReconstructRequest, Report, Request, ScenarioChoice, SeriesFile, SimulateRequest,
 };
 
 /// A folder of the test's own, empty.
@@ -382,6 +384,32 @@ fn a_package_has_the_files_of_questions_and_nothing_else_that_a_case_names() {
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names, ["files/0/force.csv"]);
     assert_eq!(files[0].path, folder.join("force.csv"));
+}
+
+/// Paths of files that are not in the package stood in it whole, with the home folder.
+#[test]
+fn a_package_says_no_folder_of_the_machine_that_packed_it() {
+    let folder = folder("packed_paths");
+    let gone = folder.join("gone");
+    let mut case = case(&force_file(&folder));
+    let evidence = EvidenceChoice::File(gone.join("evidence.toml"));
+    let checkpoint = Some(gone.join("run.checkpoint"));
+    let unasked = ReconstructRequest { checkpoint, ..ReconstructRequest::new(evidence) };
+    let variant = &mut case.variants[1];
+    variant.unasked = vec![unasked.into()];
+    variant.view = serde_json::json!({"file": gone.join("view.csv")});
+    variant.forms = serde_json::json!({"x": [gone.join("form.csv")]});
+    variant.notes = "/ as seen from the north".to_owned();
+    let name = gone.join("own.safetensors").display().to_string();
+    case.models.push(UsedModel { network: "force".to_owned(), name, sha256: "ab".to_owned() });
+    pack(&case, &folder.join("a.zip"), Existing::Refuse).expect("packed");
+    let unpacked = unpack(&folder.join("a.zip"), &folder.join("there")).expect("unpacked");
+    let text = fs::read_to_string(unpacked).expect("a case");
+    assert!(!text.contains(folder.to_str().expect("Unicode")), "{text}");
+    for name in ["evidence.toml", "run.checkpoint", "view.csv", "form.csv", "own.safetensors"] {
+        assert!(text.contains(&format!("\"./{name}\"")), "{name}: {text}");
+    }
+    assert!(text.contains("/ as seen from the north"), "{text}");
 }
 
 #[test]

@@ -84,9 +84,11 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
         let why = format!("it would have more than {MAX_FILES} files");
         return Err(CaseError::NoPackage { path: to.to_owned(), why });
     }
+    let said = case.said_paths();
     let placed = |text: &str| {
         let found = places.iter().find(|(used, _)| used == Path::new(text));
-        found.map(|(_, place)| place.clone())
+        let place = found.map(|(_, place)| place.clone());
+        place.or_else(|| said.get(Path::new(text)).map(|path| beside_case(path)))
     };
     let wrong = |source| CaseError::Syntax { path: to.to_owned(), source };
     let packed = case.with_paths(&placed).map_err(wrong)?;
@@ -106,6 +108,13 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
         Ok(())
     })?;
     Ok(entries)
+}
+
+/// What a case says in a package in place of a path that leads to none of its files, such as that of a view
+/// or of a checkpoint: the last part, beside the case. The folders above it are those of a person and a
+/// machine.
+fn beside_case(path: &Path) -> String {
+    format!("./{}", path.file_name().unwrap_or_default().to_string_lossy())
 }
 
 /// Where each file goes in a package: into a folder of its own, but what a site names beside the site, so

@@ -202,6 +202,20 @@ impl CaseFile {
         self.variants.iter().flat_map(in_variant).collect()
     }
 
+    /// Every absolute path that stands in the case, whether it is read, written or neither.
+    pub(super) fn said_paths(&self) -> HashSet<PathBuf> {
+        let in_variant = |variant: &Variant| {
+            let questions = variant.questions.iter().chain(&variant.unasked);
+            let written = questions.filter_map(Request::written_path).map(Path::to_owned);
+            let written: Vec<PathBuf> = written.collect();
+            [written, absolute_paths(&variant.forms)].concat()
+        };
+        let of_variants = self.variants.iter().flat_map(in_variant);
+        let of_models = self.models.iter().map(|model| PathBuf::from(&model.name));
+        let said = self.named_paths().into_iter().chain(of_variants).chain(of_models);
+        said.filter(|path| path.is_absolute()).collect()
+    }
+
     /// What is filled in and used by no question that is asked, a sentence each: evidence, and files that
     /// questions name which are not asked. Nothing is read.
     pub fn unused(&self) -> Vec<String> {
