@@ -137,6 +137,11 @@ fn a_broken_chunk_is_found_and_computed_anew() {
     assert_eq!(output.status.code(), Some(1), "a broken chunk is a problem");
     assert_eq!(ok(run(&["status", shown(&sweep), "--missing"])), "1\n");
     let out = folder.path().join("all.parquet");
+    // It wrote Parquet under this name.
+    let text = folder.path().join("all.csv");
+    let said = error(&["merge", shown(&sweep), "--out", shown(&text), "--overwrite"]);
+    assert!(said.contains("all.csv: cannot be made; expected a name that ends in .parquet"));
+    assert!(!text.exists());
     let said = error(&["merge", shown(&sweep), "--out", shown(&out)]);
     assert!(said.contains("part-000001.parquet: is no whole table"), "{said}");
     assert!(!out.exists());

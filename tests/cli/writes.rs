@@ -63,6 +63,24 @@ fn a_file_is_replaced_only_where_that_is_said() {
     assert!(error(&mut command(&SIMULATE, folder.path())).contains("is a folder"));
 }
 
+/// A table was written under the name of a picture, and a package under that of a case.
+#[test]
+fn a_file_holds_what_its_name_says() {
+    let folder = TempDir::new().unwrap();
+    let pack = ["case", "pack", "assets/examples/pit.impactlab"];
+    for (args, wrong, right) in
+        [(&SIMULATE[..], "motion.png", "motion.CSV"), (&pack[..], "pit.impactlab", "pit.zip")]
+    {
+        let out = folder.path().join(wrong);
+        let text = error(&mut command(args, &out));
+        let ending = right.rsplit('.').next().unwrap().to_lowercase();
+        let expected = format!("{wrong}: cannot be made; expected a name that ends in .{ending}");
+        assert!(text.ends_with(&expected), "{text}");
+        ok(command(args, &folder.path().join(right)).output().unwrap());
+    }
+    assert_eq!(names(folder.path()), ["motion.CSV", "pit.zip"]);
+}
+
 #[test]
 fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     let folder = TempDir::new().unwrap();

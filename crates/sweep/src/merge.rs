@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::chunk::{RowsWriter, chunk_path, read_chunk};
 use crate::status::array_expression;
 use crate::{PLAN_FILE, Plan, SweepError};
-use impactlab_core::data::write::check_inputs;
+use impactlab_core::data::write::{check_ending, check_inputs};
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::jobs::{Progress, ProgressCallback};
 
@@ -26,13 +26,15 @@ pub struct MergeReport {
 ///
 /// # Errors
 /// [`SweepError::Missing`] if chunks are missing, [`SweepError::Rows`] with the first that is broken,
-/// [`SweepError::Data`] if the file is one of those that it is made of.
+/// [`SweepError::Data`] if the file is one of those that it is made of, or its name does not end in
+/// `.parquet`.
 pub fn merge(
     folder: &Path,
     out: &Path,
     existing: Existing,
     progress: &mut ProgressCallback<'_>,
 ) -> Result<MergeReport, SweepError> {
+    check_ending(out, "parquet")?;
     let plan = Plan::stored(folder)?;
     let n_chunks = plan.n_chunks();
     let is_missing = |chunk: &u64| !chunk_path(folder, *chunk).exists();

@@ -13,6 +13,7 @@ use crate::cli::options::{
     contact_point, count, number, one_of,
 };
 use crate::cli::text::{PrintedAnswer, print_answer};
+use impactlab_core::data::write::check_ending;
 use impactlab_core::data::{
     ColumnMap, DatasetKind, Existing, Sampling, write_restricted_series_csv,
 };
@@ -247,6 +248,9 @@ fn simulate_one(
     let existing = args.overwrite.into();
     console.check_target(args.out.as_deref(), existing)?;
     console.take_vehicles(&mut request)?;
+    if let Some(path) = args.out.as_deref().filter(|_| !console.print_request) {
+        check_ending(path, "csv")?;
+    }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, answer.analysis.written_motion()?) {

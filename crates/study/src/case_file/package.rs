@@ -20,7 +20,7 @@ use zip::{ZipArchive, ZipWriter};
 use crate::case_file::on_disk::sealed;
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
-use impactlab_core::data::write::{WriterLock, check_inputs};
+use impactlab_core::data::write::{WriterLock, check_ending, check_inputs};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, open_file, read_utf8, write_atomically};
 
 /// Folder of the files within a package.
@@ -54,12 +54,14 @@ pub struct PackedFile {
 /// order. Who may be handed them is for the caller to ask ([`CaseFile::reach`]).
 ///
 /// # Errors
-/// [`CaseError::Missing`] for a file that is not there, [`CaseError::Zip`], [`CaseError::Data`].
+/// [`CaseError::Missing`] for a file that is not there, [`CaseError::Zip`], [`CaseError::Data`], also for
+/// a name that does not end in `.zip`.
 pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<PackedFile>, CaseError> {
     if let Some(path) = case.missing_inputs().into_iter().next() {
         return Err(CaseError::Missing { path });
     }
     check_inputs(to, &case.input_files())?;
+    check_ending(to, "zip")?;
     let mut case = case.clone();
     case.record_files();
     let mut entries = Vec::new();

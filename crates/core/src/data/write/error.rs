@@ -42,6 +42,14 @@ pub enum WriteError {
         /// The file.
         path: PathBuf,
     },
+    /// The name of the file says that it holds something else.
+    #[error("{}: cannot be made; expected a name that ends in .{ending}", path.display())]
+    Ending {
+        /// The file.
+        path: PathBuf,
+        /// The ending of files with such a content.
+        ending: &'static str,
+    },
     /// The path leads to something that cannot be replaced by a file.
     #[error("{}: is a {kind}, expected a file or a name that is not taken", path.display())]
     NotAFile {

@@ -64,6 +64,18 @@ pub fn check_target(path: &Path, existing: Existing) -> Result<(), DataError> {
     Ok(())
 }
 
+/// Returns an error if the name of a file does not end as its content has it, since whoever opens it goes by
+/// its name.
+///
+/// # Errors
+/// [`WriteError::Ending`] within [`DataError::Write`].
+pub fn check_ending(path: &Path, ending: &'static str) -> Result<(), DataError> {
+    match path.extension().is_some_and(|found| found.eq_ignore_ascii_case(ending)) {
+        true => Ok(()),
+        false => Err(WriteError::Ending { path: path.to_owned(), ending }.into()),
+    }
+}
+
 /// Where a file goes.
 pub(super) struct Target {
     /// The path behind all symbolic links.
