@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::Cars;
 use crate::evidence::Evidence;
 
 /// How much of the evidence of a case is used, so that what each part of it brings can be told.
@@ -31,15 +32,17 @@ impl KnownEvidence {
         }
     }
 
-    /// What such evidence is alike among the staged collisions that reconstructions were measured on.
-    pub fn like(evidence: &Evidence) -> Self {
+    /// What such evidence is alike among the staged collisions that reconstructions were measured on, all of
+    /// which are of a flank that was hit behind the CG; none of any other impact, and of a single car.
+    pub fn like(evidence: &Evidence, cars: &Cars) -> Option<Self> {
         let has_record = evidence.edr.or(evidence.striking_edr).is_some();
         let has_marks = !evidence.marks.is_empty() || !evidence.striking_marks.is_empty();
-        match (has_record, has_marks) {
+        let like = match (has_record, has_marks) {
             (true, _) => Self::Everything,
             (false, true) => Self::WithoutEdr,
             (false, false) => Self::RestOnly,
-        }
+        };
+        (!evidence.is_single_car() && cars.is_hit_behind_cg(evidence)).then_some(like)
     }
 
     /// What is used of the evidence.
@@ -49,5 +52,26 @@ impl KnownEvidence {
             Self::WithoutEdr => evidence.without_edr(),
             Self::RestOnly => evidence.rest_only(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// Of a car that was hit at its rear end it was told how often intervals of flanks that were hit behind the
+    /// CG had held, though no other impact has been tried.
+    #[test]
+    fn an_impact_elsewhere_than_behind_the_cg_is_like_no_staged_collision() {
+        let like = |name: &str| {
+            let folder =
+                Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/evidence"));
+            let evidence = Evidence::load(&folder.join(name)).unwrap();
+            KnownEvidence::like(&evidence, &Cars::new(&evidence, None, None))
+        };
+        assert_eq!(like("spin.toml"), Some(KnownEvidence::Everything));
+        assert_eq!(like("inline.toml"), None);
     }
 }

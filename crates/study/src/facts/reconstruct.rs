@@ -34,23 +34,29 @@ impl ReconstructReport {
         tables.into_iter().flatten().collect()
     }
 
-    /// How often such intervals held; none where there are no intervals, and of cars that were followed
-    /// through later contacts, and of a single car, on which it was not measured.
+    /// How often such intervals held; none where there are no intervals, and of an impact elsewhere than on a
+    /// flank behind the CG, of cars that were followed through later contacts, and of a single car, on which
+    /// it was not measured.
     pub fn held_table(&self) -> Option<FactTable> {
-        Measurement::shipped(Measured::reconstruction_of(self.known_when_tried()?))?.held_table()
+        let known = self.known.filter(|_| self.is_of_one_impact())?;
+        Measurement::shipped(Measured::reconstruction_of(known))?.held_table()
     }
 
-    /// The quantities whose intervals of 90 % held too seldom when such intervals were tried; likewise.
+    /// The quantities whose intervals of 90 % held too seldom when intervals of one impact were tried; of an
+    /// impact elsewhere, too, of which nothing better is known.
     pub fn held_too_seldom(&self) -> Vec<HeldTooSeldom> {
-        let Some(known) = self.known_when_tried() else { return Vec::new() };
+        if !self.is_of_one_impact() {
+            return Vec::new();
+        }
+        let known = self.known.unwrap_or(KnownEvidence::Everything);
         let of = |of: &QuantityEstimate| HeldTooSeldom::of_reconstruction(known, of.label());
         self.quantities.iter().filter_map(of).collect()
     }
 
-    /// What was known where intervals such as these were tried.
-    fn known_when_tried(&self) -> Option<KnownEvidence> {
+    /// Whether there are intervals, of cars that were not followed through later contacts.
+    fn is_of_one_impact(&self) -> bool {
         let are_followed = self.later_contacts.is_some_and(|later| later.are_followed);
-        self.known.filter(|_| self.has_intervals() && !are_followed)
+        self.has_intervals() && !are_followed
     }
 
     /// The quantities with their intervals.

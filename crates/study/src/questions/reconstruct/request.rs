@@ -139,7 +139,8 @@ pub struct ReconstructReport {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub friction_zones: Vec<FrictionZoneReport>,
     /// What the evidence is alike among the staged collisions that reconstructions were measured on; none
-    /// of a single car.
+    /// of an impact elsewhere than on a flank behind the CG, like which none of them is, and of a single
+    /// car.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub known: Option<KnownEvidence>,
     /// Whether the cars meet again, and what was made of it; none where sampling was stopped before, and of
@@ -440,23 +441,23 @@ impl Question for ReconstructRequest {
             caveats.extend(later_contacts.map_or_else(not_looked_for, |later| later.caveat()));
         }
         let modes = posterior.modes(&particles, &turned_rad);
-        caveats.extend(several_courses(&modes));
-        caveats.extend(outside);
+        caveats.extend(several_courses(&modes).into_iter().chain(outside));
         caveats.extend(slope_caveat(&target.model().cars().struck.parameters.slope));
         caveats.extend(of_fit(&fit).into_iter().chain(beside_locked_marks(&evidence)));
         let left_out = self.left_out(&target, &particles, &fit, observer);
         let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();
         caveats.extend(of_left_out(&left_out));
+        let known = KnownEvidence::like(target.evidence(), cars);
         caveats.extend(match is_single_car {
             true => single_car::restrictions(&evidence),
-            false => vec![of_validation(target.model().zones())],
+            false => vec![of_validation(ground, known, are_followed)],
         });
         caveats.extend(assumptions);
         let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
             kind: evidence.kind,
-            known: (!is_single_car).then(|| KnownEvidence::like(target.evidence())),
+            known,
             marks: compared_marks(&target, &particles, &posterior, &quantities, &modes),
             quantities,
             hinges: posterior.hinges(),
