@@ -27,7 +27,8 @@ const STAGED: [&str; 2] = ["s07", "s24"];
 
 type Probe = BTreeMap<String, f64>;
 
-/// SHA-256 over the names and contents of files and of all files in folders.
+/// SHA-256 over the names and contents of files and of all files in folders, in the order of their names:
+/// that in which a folder is listed differs between file systems.
 ///
 /// - `root`: the folder that the names start from.
 pub fn data_sha256(root: &Path, data: &[String]) -> Result<String, Box<dyn Error>> {
@@ -45,7 +46,9 @@ pub fn data_sha256(root: &Path, data: &[String]) -> Result<String, Box<dyn Error
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), Box<dyn Error>> {
     if path.is_dir() {
-        for inside in list_folder(path)? {
+        let mut inside = list_folder(path)?;
+        inside.sort();
+        for inside in inside {
             collect(&inside, files)?;
         }
     } else {
