@@ -18,7 +18,7 @@ use impactlab_reconstruct::evaluate::{KnownEvidence, StagedCollisions, StagedSpl
 use impactlab_study::{
     BadCases, EvaluateForceRequest, EvaluatePairsRequest, EvaluateResponseRequest, EvaluatedCases,
     Event, HeldIntervals, Library, Measured, ModelChoice, PairSplit, Question,
-    SimulateDatasetRequest, VehicleChoice,
+    SimulateDatasetRequest, TriedMotion, VehicleChoice,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -166,6 +166,7 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
                     in_50: count(|score| score.end_50),
                     in_90: count(|score| score.end_90),
                     n: report.cases.len(),
+                    of: None,
                 });
             }
         }
@@ -223,19 +224,32 @@ fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
             1,
         ));
     }
-    let count = |holds: fn(&MotionCoverage) -> f64| {
-        cases.iter().filter(|(_, coverage)| holds(coverage) > 0.5).count()
+    let held = |quantity: &str, kind: Option<TriedMotion>| {
+        let is_of = |case: &ComparedCase| {
+            kind.is_none_or(|kind| case.is_braked == (kind == TriedMotion::Braked))
+        };
+        let of: Vec<&MotionCoverage> =
+            cases.iter().filter(|(case, _)| is_of(case)).map(|(_, coverage)| coverage).collect();
+        let count = |holds: fn(&MotionCoverage) -> f64| {
+            of.iter().filter(|coverage| holds(coverage) > 0.5).count()
+        };
+        HeldIntervals {
+            quantity: quantity.to_owned(),
+            in_50: count(|held| held.end_50),
+            in_90: count(|held| held.end_90),
+            n: of.len(),
+            of: kind,
+        }
     };
-    let held = HeldIntervals {
-        quantity: "place at the end".to_owned(),
-        in_50: count(|held| held.end_50),
-        in_90: count(|held| held.end_90),
-        n: cases.len(),
-    };
+    let held = vec![
+        held("place at the end", None),
+        held("place of a coasting car at the end", Some(TriedMotion::Coasting)),
+        held("place of a braked car at the end", Some(TriedMotion::Braked)),
+    ];
     Ok(Found {
         subject: Measured::ResponseNetwork,
         tables: vec![rows],
-        held: vec![held],
+        held,
         held_in_all: Vec::new(),
     })
 }
@@ -290,6 +304,7 @@ fn force(path: &Path) -> Result<Found, Box<dyn Error>> {
             in_50: count(0)?,
             in_90: count(2)?,
             n,
+            of: None,
         });
     }
     Ok(Found {
@@ -364,7 +379,7 @@ pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>
             if !scored.is_empty() {
                 let [in_50, _, in_90, _] = held_by_level(&scored.iter().collect::<Vec<_>>())?;
                 let (quantity, n) = (quantity.label().to_owned(), scored.len());
-                held_in_all.push(HeldIntervals { quantity, in_50, in_90, n });
+                held_in_all.push(HeldIntervals { quantity, in_50, in_90, n, of: None });
             }
             for (names, part) in &parts {
                 let scored: Vec<&Scored> =
@@ -380,7 +395,8 @@ pub(crate) fn reconstructions(path: &Path, datasets: &Path) -> Result<Vec<Found>
                 rows.push(Row::new(&cells.collect::<Vec<_>>(), 3));
                 if *part == "reported" {
                     let quantity = quantity.label().to_owned();
-                    held.push(HeldIntervals { quantity, in_50: counts[0], in_90: counts[2], n });
+                    let [in_50, _, in_90, _] = counts;
+                    held.push(HeldIntervals { quantity, in_50, in_90, n, of: None });
                 }
             }
         }

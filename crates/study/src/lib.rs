@@ -47,7 +47,9 @@ pub use ask::question::{Event, Observer, Question, Sampling};
 pub use ask::request::{AnyAnswer, Report, Request};
 pub use ask::schema::{JsonKind, json_kinds};
 pub use ask::word::word;
-pub use measured::{HeldIntervals, Measured, Measurement, Measurements, ValidationTable};
+pub use measured::{
+    HeldIntervals, Measured, Measurement, Measurements, TriedMotion, ValidationTable,
+};
 pub use questions::check::report::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,
     ProposedColumn, RecordedForceReport,

@@ -98,6 +98,19 @@ pub struct HeldIntervals {
     pub in_90: usize,
     /// Number of cases.
     pub n: usize,
+    /// Which of the cases these are; all of them if nothing is said.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub of: Option<TriedMotion>,
+}
+
+/// A kind of motion of which it was counted by itself how often intervals held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TriedMotion {
+    /// Nothing acts on the wheels, which may be steered.
+    Coasting,
+    /// Wheels are braked, dragged or locked.
+    Braked,
 }
 
 impl HeldIntervals {
@@ -129,6 +142,14 @@ impl Measurement {
     /// The measurement of a subject in the shipped program.
     pub fn shipped(subject: Measured) -> Option<&'static Self> {
         Measurements::shipped().iter().find(|measurement| measurement.subject == subject)
+    }
+
+    /// How often intervals held of motions of a kind; of all where those of the kind were not counted by
+    /// themselves.
+    pub fn held_of(&self, kind: Option<TriedMotion>) -> Vec<&HeldIntervals> {
+        let of = |kind| self.held.iter().filter(move |held| held.of == kind).collect::<Vec<_>>();
+        let own = of(kind);
+        if own.is_empty() { of(None) } else { own }
     }
 }
 

@@ -56,7 +56,7 @@ impl Controls {
     }
 
     /// Whether wheels may be driven, braked or locked.
-    pub(super) fn acts_on_wheels(&self) -> bool {
+    pub fn acts_on_wheels(&self) -> bool {
         self.wheels.is_some() || self.closed_loop.as_ref().is_some_and(ClosedLoop::acts_on_wheels)
     }
 

@@ -4,7 +4,7 @@ use impactlab_core::numerics::wilson_interval;
 
 use crate::ModelChoice;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::measured::{HeldIntervals, Measured, Measurement};
+use crate::measured::{HeldIntervals, Measured, Measurement, TriedMotion};
 use impactlab_reconstruct::evaluate::KnownEvidence;
 
 /// Share of the truths that an interval of 90 % says that it holds.
@@ -39,7 +39,9 @@ impl HeldTooSeldom {
 
 impl Measurement {
     /// How often such intervals held, with the bounds of 95 % confidence; none if it was not counted.
-    pub(crate) fn held_table(&self) -> Option<FactTable> {
+    ///
+    /// - `kind`: of motions of that kind, where these were counted by themselves.
+    pub(crate) fn held_table(&self, kind: Option<TriedMotion>) -> Option<FactTable> {
         let columns =
             [Term::Cases, Term::In50, Term::In90, Term::ConfidenceFrom, Term::ConfidenceTo];
         let row = |held: &HeldIntervals| {
@@ -54,7 +56,7 @@ impl Measurement {
             ];
             Fact::row(Value::Phrase(held.quantity.clone()), values)
         };
-        let rows = self.held.iter().map(row).collect();
+        let rows = self.held_of(kind).into_iter().map(row).collect();
         FactTable::new(Term::HeldIntervals, rows).with_columns(&columns).unless_empty()
     }
 }
@@ -65,8 +67,12 @@ pub(super) fn measurement_of(subject: Measured, model: &str) -> Option<&'static 
 }
 
 /// How often intervals of answers by a model held; likewise.
-pub(crate) fn held_intervals(subject: Measured, model: &str) -> Option<FactTable> {
-    measurement_of(subject, model)?.held_table()
+pub(crate) fn held_intervals(
+    subject: Measured,
+    model: &str,
+    kind: Option<TriedMotion>,
+) -> Option<FactTable> {
+    measurement_of(subject, model)?.held_table(kind)
 }
 
 #[cfg(test)]
@@ -92,12 +98,38 @@ mod tests {
     #[test]
     fn what_held_is_told_with_its_number_and_bounds() {
         let measurement = Measurement::shipped(Measured::ForceNetwork).unwrap();
-        let held = HeldIntervals { quantity: "peak".to_owned(), in_50: 10, in_90: 19, n: 25 };
+        let quantity = "peak".to_owned();
+        let held = HeldIntervals { quantity, in_50: 10, in_90: 19, n: 25, of: None };
         let measurement = Measurement { held: vec![held], ..measurement.clone() };
-        let table = measurement.held_table().unwrap();
+        let table = measurement.held_table(None).unwrap();
         let text = table.to_text(&FactWriter::english(UnitSystem::Si));
         assert_eq!(text.rows[0].cells, ["peak", "25", "40.0 %", "76.0 %", "56.6 %", "88.5 %"]);
-        assert!(held_intervals(Measured::ForceNetwork, "other.safetensors").is_none());
-        assert!(held_intervals(Measured::ForceNetwork, "shipped").is_some());
+        assert!(held_intervals(Measured::ForceNetwork, "other.safetensors", None).is_none());
+        assert!(held_intervals(Measured::ForceNetwork, "shipped", None).is_some());
+    }
+
+    /// Of a braked car it was told how often regions held of coasting and of braked ones together.
+    #[test]
+    fn of_a_braked_car_what_held_of_braked_cars_is_told() {
+        let measurement = Measurement::shipped(Measured::ResponseNetwork).unwrap();
+        let of = |kind| match &measurement.held_of(kind)[..] {
+            [held] => (held.in_50, held.in_90, held.n),
+            several => panic!("{several:?}"),
+        };
+        let [coasting, braked] = [TriedMotion::Coasting, TriedMotion::Braked].map(Some).map(of);
+        assert_eq!(of(None), (coasting.0 + braked.0, coasting.1 + braked.1, coasting.2 + braked.2));
+        assert!(braked.1 * coasting.2 < coasting.1 * braked.2, "{braked:?} {coasting:?}");
+        // As the table beside them says.
+        let lines = &measurement.tables[0].lines;
+        let share = |(_, in_90, n): (usize, usize, usize)| {
+            format!(" {:.0} % |", in_90 as f64 / n as f64 * 100.0)
+        };
+        for (name, held) in [("| coasting |", coasting), ("| braked |", braked)] {
+            let line = lines.iter().find(|line| line.starts_with(name)).unwrap();
+            assert!(line.ends_with(&share(held)), "{line} {held:?}");
+        }
+        // Where a kind was not counted by itself, all are told.
+        let pairs = Measurement::shipped(Measured::Pairs).unwrap();
+        assert_eq!(pairs.held_of(Some(TriedMotion::Braked)), pairs.held_of(None));
     }
 }

@@ -22,7 +22,8 @@ impl PredictForceReport {
     /// How often such intervals held; none outside of what the network has learned from, where the cases
     /// that were counted lie.
     pub fn held_table(&self) -> Option<FactTable> {
-        held_intervals(Measured::ForceNetwork, &self.model).filter(|_| self.applicability >= 1.0)
+        held_intervals(Measured::ForceNetwork, &self.model, None)
+            .filter(|_| self.applicability >= 1.0)
     }
 
     /// The force with its intervals.

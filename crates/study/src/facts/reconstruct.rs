@@ -39,7 +39,7 @@ impl ReconstructReport {
     /// it was not measured.
     pub fn held_table(&self) -> Option<FactTable> {
         let known = self.known.filter(|_| self.is_of_one_impact())?;
-        Measurement::shipped(Measured::reconstruction_of(known))?.held_table()
+        Measurement::shipped(Measured::reconstruction_of(known))?.held_table(None)
     }
 
     /// The quantities whose intervals of 90 % held too seldom when intervals of one impact were tried; of an

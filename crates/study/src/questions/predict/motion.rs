@@ -75,6 +75,8 @@ pub struct PredictMotionReport {
     pub scenario: String,
     /// The struck vehicle.
     pub vehicle: String,
+    /// Whether wheels of the struck vehicle are driven, braked, dragged or locked.
+    pub is_braked: bool,
     /// The force file, where the force is one.
     pub force: Option<PathBuf>,
     /// The force network, where the force is predicted.
@@ -442,6 +444,7 @@ impl PredictMotionRequest {
         PredictMotionReport {
             scenario: analysis.name.clone(),
             vehicle: struck.vehicle.name.clone(),
+            is_braked: struck.controls.acts_on_wheels(),
             force: match &self.force {
                 ForceSource::File(path) => Some(path.clone()),
                 ForceSource::Given => self.motion.source.force_file().cloned(),
