@@ -209,6 +209,26 @@ mod tests {
         ]);
     }
 
+    /// The report of a car from a data sheet stated the error of one whose every parameter was measured, and that of
+    /// a wall or a T-bone the error of flanks and PITs.
+    #[test]
+    fn texts_say_of_other_cars_and_other_collisions_that_the_errors_are_larger_or_unknown() {
+        let by_sheet = "1.13 m (0.68) in the mean over the first 4 s";
+        assert!(VALIDATION.contains(&format!("{by_sheet} and")), "{by_sheet}");
+        let few = "of three T-bone collisions the regions of 50 % hold next to nothing, of four rear-end collisions";
+        assert!(VALIDATION.contains(few), "{few}");
+        let [en, de] = words();
+        assert_each_says(&[
+            (en.validation_four_dof, "1.13 m in the mean over the first 4 s".to_owned()),
+            (en.validation_four_dof, "0.68 m in the median".to_owned()),
+            (de.validation_four_dof, "4 s im Mittel 1,13 m, im Median 0,68 m".to_owned()),
+            (en.validation_contact, "four that were hit from behind".to_owned()),
+            (de.validation_contact, "vier, die von hinten getroffen wurden".to_owned()),
+            (en.validation_impact, "walls and poles".to_owned()),
+            (de.validation_impact, "Wände und Pfähle".to_owned()),
+        ]);
+    }
+
     /// What stands in texts of the collisions of the whole range is what the table of the measurement says.
     #[test]
     fn texts_say_of_fast_collisions_what_was_measured() {

@@ -362,10 +362,13 @@ pub(super) const WORDS: Words = Words {
     other_networks: "Answered by other networks than the default ones: {list}. Limits of the method and validation in \
         this report are of the default ones, which come with the program: what they learned from and how they did. \
         Of these networks they say nothing: `impactlab evaluate` measures them.",
-    validation_impact: "Against finite-element runs that close at {slow} to {middle}; at higher closing speeds \
-        restitution is smaller.",
+    validation_impact: "Against finite-element runs of blows against a flank that close at {slow} to {middle}. Not \
+        tried were higher closing speeds, at which restitution is smaller, blows against front or rear, walls and \
+        poles.",
     table_impact: "Error of the impulse vector, median (mean), %",
-    validation_four_dof: "Against a multibody model of the same car over 4 s.",
+    validation_four_dof: "Against a multibody model of the same car, on which its parameters were measured, over 4 s. Of \
+        fifteen cars of which only the data sheet was known it erred more: by 1.13 m in the mean over the first 4 s, and \
+        by 0.68 m in the median, on 180 motions.",
     table_four_dof: "Distance from the reference path",
     validation_force: "The shipped one, against 25 finite-element runs that it has not seen, which close at {slow} to \
         {middle}; intervals of 50 % are too wide there. Of 61 others, which close at up to {fast}, intervals of 90 % held 89 % of the impulses, \
@@ -378,7 +381,8 @@ pub(super) const WORDS: Words = Words {
         real motion was tried.",
     validation_contact: "95 simulated pairs of multibody cars, 84 of them PIT manoeuvres; the law was fitted to half of \
         them. There it was used from the first touch on, without the force network, and what the drivers did was known. \
-        No real collision was tried.",
+        Of three cars that were hit at a right angle and four that were hit from behind the regions along the path were \
+        too narrow. No wall, no pole and no real collision was tried.",
     table_contact: "Error over 4 s and at the end, m, turns that were right, and shares of instants and ends inside the \
         regions",
     table_response: "Errors, m, and coverage",
