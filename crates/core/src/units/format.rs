@@ -70,6 +70,10 @@ const GIVEN_DIGITS: i32 = 8;
 /// Speed and rate of turning below which something stands still, in the unit of display.
 const STANDSTILL: f64 = 1e-3;
 
+/// Width of an interval below which it is one of rounding, in the unit of display: no decimal that is shown
+/// tells its ends apart.
+const LEAST_WIDTH: f64 = 1e-6;
+
 impl EstimateText {
     /// The interval of a level; `None` if there is none.
     pub fn at(&self, level: f64) -> Option<&IntervalText> {
@@ -250,7 +254,7 @@ impl NumberFormat {
         let [low, high] = ends.map(|si| unit.from_si(si));
         let width = (high - low).abs();
         let median = self.local(&with_width(unit.from_si(estimate.median), width));
-        if low == high {
+        if width < LEAST_WIDTH {
             return self.with_unit(&median, unit.symbol);
         }
         let [low, high] = bounds([low, high], width).map(|bound| self.local(&bound));
@@ -303,7 +307,7 @@ fn rough_number(quantity: Quantity, value: f64) -> String {
 }
 
 /// A number with two digits of a width, so that no digit is shown that the width makes meaningless;
-/// with four significant digits if the width is zero.
+/// with four significant digits if the width is none but rounding.
 fn with_width(value: f64, width: f64) -> String {
     rounded_by(value, width, f64::round)
 }
@@ -317,12 +321,12 @@ fn bounds([low, high]: [f64; 2], width: f64) -> [String; 2] {
     [rounded_by(low, width, down), rounded_by(high, width, |steps| -down(-steps))]
 }
 
-/// A number with two digits of a width, or with four significant ones if that is zero.
+/// A number with two digits of a width, or with four significant ones if that is none but rounding.
 ///
 /// - `round`: to a whole number of steps of the last digit.
 fn rounded_by(value: f64, width: f64, round: impl Fn(f64) -> f64) -> String {
     match width {
-        0.0 => significant(value),
+        width if width < LEAST_WIDTH => significant(value),
         width if !width.is_finite() => value.to_string(),
         width => {
             let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
@@ -432,6 +436,8 @@ mod tests {
         assert_eq!(shown(0.5, [0.3, 0.1 + 0.6]), "0.50 (0.30 to 0.70) m");
         assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.5 to 52.9) m");
         assert_eq!(shown(2.0, [2.0, 2.0]), "2.000 m");
+        // What does not move was told as “0.000000 (0.000000 to 0.000000) m”.
+        assert_eq!(shown(8e-17, [-6e-14, 2e-14]), "0 m");
         assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
         let nested = Estimate::new(32.209, [30.11, 34.52], [26.789, 37.193]);
         let text = EN.estimate(Quantity::Length, &nested);

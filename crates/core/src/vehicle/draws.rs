@@ -57,6 +57,10 @@ impl Sensitivity {
 /// Quantile 0.95 of χ² with one degree of freedom: n r² without dependence.
 const CHI_SQUARED_95: f64 = 3.841;
 
+/// Variance of a place, m², or a heading, rad², up to which it is one of rounding: that of a micrometre, or of a
+/// microradian.
+const LEAST_VARIANCE: f64 = 1e-12;
+
 impl VehicleDraws {
     /// Draws every estimate of a data sheet, each independent of the others; together the draws fill
     /// the space of the estimates evenly (Latin hypercube,
@@ -155,17 +159,16 @@ impl VehicleDraws {
                 let values: Vec<f64> = drawn.iter().map(|(_, end)| end[component]).collect();
                 Moments::new(&factor, &values)
             });
-            let variance = x.variance + y.variance;
-            let explained = x.explained() + y.explained();
+            // Of what does not move no estimate has a part, though rounding leaves a variance.
+            let share = |explained: f64, variance: f64| match variance > LEAST_VARIANCE {
+                true => adjusted(explained / variance),
+                false => 0.0,
+            };
             Sensitivity {
                 quantity,
                 label: quantity.label(),
-                position_share: adjusted(if variance > 0.0 { explained / variance } else { 0.0 }),
-                heading_share: adjusted(if heading.variance > 0.0 {
-                    heading.explained() / heading.variance
-                } else {
-                    0.0
-                }),
+                position_share: share(x.explained() + y.explained(), x.variance + y.variance),
+                heading_share: share(heading.explained(), heading.variance),
                 chance_share: (CHI_SQUARED_95 / n.max(1.0)).min(1.0),
             }
         };
@@ -254,6 +257,11 @@ mod tests {
             (share.position_share, share.heading_share)
         };
         assert_eq!(shares[0].quantity, draws.quantities[2]);
+        // A heading that stays had “22.3 % of its variance” from the front overhang, by the last digits.
+        let rounded = |z: &Vec<f64>| Some([4.0 * z[2], 0.0, 1e-15 * z[7]]);
+        let stays: Vec<_> = draws.latents.iter().map(rounded).collect();
+        let stays = draws.sensitivities(&stays);
+        assert!(stays.iter().all(|share| share.heading_share == 0.0), "{stays:?}");
         assert!((share(2).0 - 0.64).abs() < 0.08, "{shares:?}");
         assert!((share(5).0 - 0.36).abs() < 0.08, "{shares:?}");
         assert!(share(7).1 > 0.999 && share(7).0 < 0.03, "{shares:?}");

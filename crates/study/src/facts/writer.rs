@@ -27,6 +27,9 @@ const LEAST_PROBABILITY: f64 = 0.001;
 /// Probability from which on it would be written as certain, and a table says only that it is larger.
 const MOST_PROBABILITY: f64 = 0.9995;
 
+/// Area below which a place does not vary, m²: a square centimetre.
+const LEAST_AREA_M2: f64 = 1e-4;
+
 impl FactWriter<'static> {
     /// English, in the units of a system.
     pub fn english(units: UnitSystem) -> Self {
@@ -127,6 +130,7 @@ impl FactWriter<'_> {
     /// An area in squares of the unit of lengths.
     fn area(&self, area_m2: f64) -> String {
         let unit = Quantity::Length.display_unit(self.format.units);
+        let area_m2 = if area_m2 < LEAST_AREA_M2 { 0.0 } else { area_m2 };
         let area = area_m2 / unit.si_per_unit.powi(2);
         self.format.with_unit(&two_digits(area), &format!("{}²", unit.symbol))
     }
@@ -149,6 +153,7 @@ mod tests {
         assert_eq!(text(Value::drawn(Quantity::Length, &unknown)), "-193 m");
         assert_eq!(text(Value::Change(Quantity::Length, 1.234, 0.12)), "+1.23 ± 0.12 m");
         assert_eq!(text(Value::Area(163.9)), "160 m²");
+        assert_eq!(text(Value::Area(9.9e-6)), "0 m²");
         assert_eq!(text(Value::Place([43.98, -5.944])), "(44.0; -5.9) m");
         assert_eq!(text(Value::Rounded(Quantity::Time, 0.003)), "0.003 s");
         assert_eq!(text(Value::Probability(1.0)), "> 0.999");
