@@ -95,6 +95,9 @@ mod tests {
             assert_eq!(pdof.clock(), clock, "{impulse:?}: {pdof:?}");
         }
         assert!(PrincipalDirectionOfForce::from_impulse([0.0, 0.0], 0.0).is_none());
+        // A blow straight from ahead was told as one from 360°.
+        let ahead = PrincipalDirectionOfForce::from_impulse([-1.0, -1e-13], 0.0).unwrap();
+        assert_eq!(ahead.angle_rad, 0.0);
     }
 
     /// Straight ahead was told as 360.0 beside 0.0, by the rounding of a heading.

@@ -13,7 +13,10 @@ use crate::analysis::{
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 
-/// Columns of a table of phases of contact.
+/// Change of velocity below which an object does not move, m/s: a wall is solved with 10⁸ kg.
+const FIXED_DELTA_V_M_S: f64 = 1e-3;
+
+/// Columns of a table of phases of contact, the last two of the striking vehicle.
 const PHASE_COLUMNS: [Term; 7] = [
     Term::PhaseStart,
     Term::PhaseDuration,
@@ -23,6 +26,9 @@ const PHASE_COLUMNS: [Term; 7] = [
     Term::PhaseStrikingDeltaV,
     Term::PhaseStrikingPdof,
 ];
+
+/// How many of them are of the striking vehicle.
+const N_OF_STRIKING: usize = 2;
 
 impl From<Course> for Term {
     fn from(course: Course) -> Self {
@@ -103,8 +109,11 @@ impl ContactsOutcome {
     }
 }
 
-/// The phases of contact of a single motion; none without any.
+/// The phases of contact of a single motion; none without any. A wall or a pole has no change of velocity.
 pub(super) fn phase_table(phases: &[ContactPhaseReport]) -> Option<FactTable> {
+    let is_fixed = phases.iter().all(|phase| phase.striking.delta_v_m_s.abs() < FIXED_DELTA_V_M_S);
+    let n_columns = PHASE_COLUMNS.len() - if is_fixed { N_OF_STRIKING } else { 0 };
+    let columns: Vec<Term> = PHASE_COLUMNS.into_iter().take(n_columns).collect();
     let row = |(number, phase): (usize, &ContactPhaseReport)| {
         let duration = match phase.end_s {
             Some(end_s) => Value::Number(Quantity::Time, end_s - phase.start_s),
@@ -121,14 +130,16 @@ pub(super) fn phase_table(phases: &[ContactPhaseReport]) -> Option<FactTable> {
         ];
         values.extend(of_vehicle(&phase.struck));
         values.extend(of_vehicle(&phase.striking));
+        values.truncate(n_columns);
         Fact::row(Value::Count(number + 1), values)
     };
     let rows = phases.iter().enumerate().map(row).collect();
     let table = FactTable::new(Term::Phases, rows).with_rows(Term::Phase);
-    table.with_columns(&PHASE_COLUMNS).unless_empty()
+    table.with_columns(&columns).unless_empty()
 }
 
-/// A principal direction of force, clockwise from the heading within one turn.
+/// A principal direction of force, clockwise from the heading within one turn, to the degree: that from straight
+/// ahead is 0°, not 360°.
 fn pdof_value(angle_rad: Option<f64>) -> Value {
     match angle_rad {
         Some(angle_rad) => {
@@ -165,5 +176,36 @@ impl StrikingReport {
         facts.extend(region.map(|area_m2| Fact::new(Term::Region90, Value::Area(area_m2))));
         facts.extend(outcome.monte_carlo.iter().flat_map(MonteCarloError::facts));
         FactTable::new(Term::StrikingForecast, facts).with_levels(PREDICTED)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::facts::FactWriter;
+    use impactlab_core::units::UnitSystem;
+
+    /// A wall was told to have a Δv of 0 km/h from 270°, and the car one from 360°.
+    #[test]
+    fn a_wall_has_no_change_of_velocity_and_straight_ahead_is_no_whole_turn() {
+        let of = |delta_v_m_s, pdof_deg: f64| PhaseOfVehicleReport {
+            delta_v_m_s,
+            pdof_rad: Some(pdof_deg.to_radians()),
+        };
+        let told = |striking| {
+            let phase = ContactPhaseReport {
+                start_s: 0.0,
+                end_s: Some(0.1),
+                impulse_n_s: [-22_000.0, 0.0],
+                peak_force_n: 4e5,
+                struck: of(16.0, 359.9),
+                striking,
+            };
+            phase_table(&[phase]).unwrap().to_text(&FactWriter::english(UnitSystem::Si))
+        };
+        let [wall, car] = [told(of(2.2e-4, 270.0)), told(of(11.0, 180.2))];
+        assert_eq!((wall.header.len(), wall.rows[0].cells.len()), (6, 6), "{:?}", wall.header);
+        assert_eq!(wall.rows[0].cells[5], "0 deg");
+        assert_eq!((car.header.len(), &*car.rows[0].cells[7]), (8, "180 deg"));
     }
 }
