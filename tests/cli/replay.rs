@@ -140,4 +140,14 @@ fn a_report_of_a_replay_has_its_notes() {
     ok(program().args(args).arg(&out).output().unwrap());
     let told = fs::read_to_string(&out).unwrap();
     assert!(told.contains("Hinweis: Es ist keine Gierrate aufgezeichnet"), "{told}");
+    // The opinion had no answer, no method and no figure of it.
+    let (opinion, annex) = told.split_once("Jede Zahl dieses Gutachtens").unwrap();
+    assert!(opinion.contains("Geschwindigkeit beim ersten Kontakt: "), "{opinion}");
+    assert!(!opinion.contains("Keine Antwort des Falls"), "{opinion}");
+    assert!(annex.contains("4DOF-Fahrzeugmodell eines einzelnen Fahrzeugs"), "{annex}");
+    for wrong in
+        ["Keine Antwort stammt aus einem Modell", "gezogene Kräfte", "Gierrate, aufgezeichnet"]
+    {
+        assert!(!annex.contains(wrong), "{wrong}: {annex}");
+    }
 }

@@ -6,7 +6,7 @@ use impactlab_core::vehicle::Integrator;
 use impactlab_study::word;
 
 /// Names whose words do not say what they mean.
-const NAMES: [(&str, &str); 45] = [
+const NAMES: [(&str, &str); 44] = [
     ("alone", "without the other method beside it"),
     ("bullet", "striking vehicle"),
     ("bullet_ending", "striking vehicle after the impact"),
@@ -15,7 +15,6 @@ const NAMES: [(&str, &str); 45] = [
     ("cg_from_front_m", "CG behind front"),
     ("contact_height_m", "height above ground"),
     ("countersteer", "the driver countersteers"),
-    ("draws", "forces drawn"),
     ("ending", "after the impact"),
     ("engine", "the engine brakes"),
     ("equations", "equations of motion"),

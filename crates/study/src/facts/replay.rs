@@ -75,22 +75,26 @@ impl ReplayReport {
 
     /// The recorded samples beside the computed motion.
     pub fn sample_table(&self) -> FactTable {
+        let has_yaw_rate =
+            self.samples.iter().any(|sample| sample.recorded_yaw_rate_rad_s.is_some());
         let row = |sample: &ReplaySample| {
             let recorded = sample.recorded_yaw_rate_rad_s;
             let recorded = recorded.map(|rate| Value::Number(Quantity::AngularVelocity, rate));
+            let recorded = recorded.unwrap_or_else(|| Value::Text(String::new()));
             let computed = sample.yaw_rate_rad_s.clone();
-            let values = vec![
-                Value::Number(Quantity::Speed, sample.recorded_speed_m_s),
-                recorded.unwrap_or_else(|| Value::Text(String::new())),
-                Value::Estimate(Quantity::AngularVelocity, computed),
-            ];
+            // Recorders round to whole units.
+            let mut values = vec![Value::Decimals(Quantity::Speed, sample.recorded_speed_m_s, 1)];
+            values.extend(has_yaw_rate.then_some(recorded));
+            values.push(Value::Estimate(Quantity::AngularVelocity, computed));
             Fact::row(Value::Decimals(Quantity::Time, sample.recorder_time_s, 2), values)
         };
         let table = FactTable::new(Term::RecorderSamples, self.samples.iter().map(row).collect());
-        table.with_rows(Term::RecorderTime).with_levels(PREDICTED).with_columns(&[
-            Term::RecorderRecordedSpeed,
-            Term::RecorderRecordedYawRate,
-            Term::RecorderComputedYawRate,
-        ])
+        let columns = [
+            Some(Term::RecorderRecordedSpeed),
+            has_yaw_rate.then_some(Term::RecorderRecordedYawRate),
+            Some(Term::RecorderComputedYawRate),
+        ];
+        let columns: Vec<Term> = columns.into_iter().flatten().collect();
+        table.with_rows(Term::RecorderTime).with_levels(PREDICTED).with_columns(&columns)
     }
 }

@@ -142,14 +142,14 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage: Gierwinkel des gestoßenen Fahrzeugs über der Zeit mit Bändern",
-    ask_replay: "Frage: Wie bewegte sich {vehicle} bis zum ersten Kontakt, nach Geschwindigkeit und Lenkung ihres \
-        Unfalldatenspeichers ({name})?",
+    ask_replay: "Frage: Wie bewegte sich das Fahrzeug {vehicle} bis zum ersten Kontakt, nach Geschwindigkeit und \
+        Lenkwinkel seines Unfalldatenspeichers ({name})?",
     meaning_replay: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn die Aufzeichnung \
         die dieser Bewegung ist und ihre Fehler so sind, wie sie gezogen wurden; wie oft solche Bereiche \
         zutreffen, hat niemand gemessen.",
     draws_replay: "Ziehungen der Aufzeichnung:",
     replay_path_picture: "Bahn bis zum ersten Kontakt von oben, mit dem Band von 90 % der Ziehungen quer zu ihr",
-    replay_picture: "{quantity} über der Uhr des Datenspeichers: aufgezeichnet und nachgefahren, mit dem Band von \
+    replay_picture: "{quantity} über der Uhr des Datenspeichers: aufgezeichnet und nachgerechnet, mit dem Band von \
                      90 %",
     meaning_hand: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn das Verfahren gilt und die \
                    Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",

@@ -116,7 +116,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("samples", "ausgegebene Verläufe"),
     ("force", "Kraft"),
     ("response model", "Bewegungsnetz"),
-    ("draws", "gezogene Kräfte"),
+    ("draws", "Ziehungen"),
     ("share of friction", "Anteil an der Haftgrenze"),
     ("rise", "Anstiegszeit"),
     ("start", "Beginn"),
@@ -640,7 +640,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("Time on the clock of the recorder", "Zeit auf der Uhr des Datenspeichers"),
     ("Speed", "Geschwindigkeit"),
     ("Yaw rate", "Gierrate"),
-    ("replayed", "nachgefahren"),
+    ("replayed", "nachgerechnet"),
     ("first sample, X and Y each 90 %", "erster Abtastwert, X und Y je 90 %"),
     ("first contact", "erster Kontakt"),
     ("X", "X"),
@@ -776,7 +776,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     // Methods by hand.
     ("hand", "Rechnung von Hand"),
     // The replay of a recorder.
-    ("replay", "Nachfahrt eines Unfalldatenspeichers"),
+    ("replay", "Nachrechnung eines Unfalldatenspeichers"),
     ("recorder", "Unfalldatenspeicher"),
     ("event", "Ereignis"),
     ("driven axle", "angetriebene Achse"),

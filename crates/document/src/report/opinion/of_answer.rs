@@ -5,10 +5,12 @@ use crate::report::answer::{Context, capitalized, facts_table, with_writer};
 use crate::report::numbers::fill;
 use crate::report::opinion::part::{PartOpinion, Rank};
 use crate::report::opinion::words::{OpinionWords, opinion_words};
+use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::Quantity;
 use impactlab_study::facts::{Fact, FactTable, Term, Value};
 use impactlab_study::{
-    ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport, SimulateReport,
+    Answer, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport, ReplayReport,
+    SimulateReport,
 };
 
 /// Facts of a simulation that variants are compared by.
@@ -224,6 +226,33 @@ pub(in crate::report) fn opinion_of_impact(
         held: None,
         is_doubtful: false,
         hinges: vec![words.impact_hinges.to_owned()],
+    }
+}
+
+/// A car up to the first contact, by its recorder.
+pub(in crate::report) fn opinion_of_replay(
+    answer: &Answer<ReplayReport>,
+    question: &str,
+    context: Context<'_>,
+) -> PartOpinion {
+    let words = opinion_words(context.wording.language);
+    let tables = [answer.contact_table(), answer.way_table()];
+    let figures: Vec<[String; 2]> =
+        tables.iter().flat_map(|table| rows_of(table, |_| true, context)).collect();
+    // The speed; the table below has the other figures.
+    let mut sentences = vec![capitalized(&told(&figures, 1))];
+    if answer.caveats.has(CaveatKind::DoubtfulData) {
+        sentences.push(words.doubtful_record.to_owned());
+    }
+    PartOpinion {
+        rank: Rank::Replay,
+        question: question.to_owned(),
+        answer: sentences.join(" "),
+        courses: Vec::new(),
+        figures,
+        held: None,
+        is_doubtful: false,
+        hinges: vec![words.replay_hinges.to_owned()],
     }
 }
 

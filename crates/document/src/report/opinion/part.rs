@@ -5,6 +5,8 @@ use crate::report::Block;
 /// How much of the case an answer decides. Of each variant the answers of the highest rank speak.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::report) enum Rank {
+    /// The way up to the contact.
+    Replay,
     /// The impulse alone.
     Impact,
     /// The force over time.

@@ -62,6 +62,8 @@ pub(super) struct OpinionWords {
     pub over_draws: &'static str,
     pub force_hinges: &'static str,
     pub impact_hinges: &'static str,
+    pub replay_hinges: &'static str,
+    pub doubtful_record: &'static str,
     pub speed_hinges: &'static str,
     pub car_hinges: &'static str,
     pub share_hinges: &'static str,
@@ -152,6 +154,9 @@ const EN: OpinionWords = OpinionWords {
         changes with each of them was not computed.",
     impact_hinges: "The impulse follows from masses, velocities, place of contact, restitution and friction of \
         section 3; how much it changes with each of them was not computed.",
+    replay_hinges: "The speed at the contact follows from the recorded one, and from what is taken of the time between \
+        the last sample and the contact; how much it changes with each of these was not computed.",
+    doubtful_record: "The record is doubtful in what the warnings in section 6 name, which is not in the interval.",
     speed_hinges: "{name}, as far as the evidence leaves it open: speed of the struck car {struck}, of the striking \
         car {striking}.",
     car_hinges: "{name}, as far as the evidence leaves it open: speed of the car {speed}.",
@@ -237,6 +242,11 @@ const DE: OpinionWords = OpinionWords {
         jedem davon ändert, wurde nicht berechnet.",
     impact_hinges: "Der Impuls folgt aus Massen, Geschwindigkeiten, Kontaktort, Stoßziffer und Reibbeiwert in Abschnitt \
         3; wie stark er sich mit jedem davon ändert, wurde nicht berechnet.",
+    replay_hinges: "Die Geschwindigkeit beim Kontakt folgt aus der aufgezeichneten und aus dem, was für die Zeit zwischen \
+        dem letzten Abtastwert und dem Kontakt angenommen ist; wie stark sie sich mit jedem davon ändert, wurde nicht \
+        berechnet.",
+    doubtful_record: "Die Aufzeichnung ist in dem zweifelhaft, was die Warnungen in Abschnitt 6 nennen; im angegebenen \
+        Bereich ist das nicht enthalten.",
     speed_hinges: "{name}, soweit die Spuren dies offenlassen: Geschwindigkeit des gestoßenen Fahrzeugs {struck}, des \
         stoßenden {striking}.",
     car_hinges: "{name}, soweit die Spuren dies offenlassen: Geschwindigkeit des Fahrzeugs {speed}.",

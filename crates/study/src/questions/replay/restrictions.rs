@@ -172,10 +172,12 @@ fn wheel_speed(record: &Record, limit_m_s2: f64) -> Vec<Caveat> {
     let slipping = (is_slipping && locked.is_none()).then(|| {
         let text = Phrase::new(
             "the car was braked hard or its anti-lock system was at work: braked wheels slip, so that the recorded \
-             speed is below that over ground by some per cent, for which nothing is corrected",
+             speed is below that over ground, in tests under full braking by 8 to 18 %; the intervals are not \
+             corrected for it: the car may have been faster than they say",
             "Der Wagen wurde stark gebremst, oder sein ABS griff ein: gebremste Räder haben Schlupf, die \
-             aufgezeichnete Geschwindigkeit liegt daher einige Prozent unter der über Grund; korrigiert ist \
-             darum nichts",
+             aufgezeichnete Geschwindigkeit liegt daher unter der über Grund, in Versuchen bei Vollbremsung um 8 \
+             bis 18 %; die Bereiche sind darum nicht berichtigt, der Wagen kann schneller gewesen sein, als sie \
+             angeben",
         );
         Caveat::new(CaveatKind::DoubtfulData, text)
     });
@@ -360,8 +362,8 @@ fn notes(report: &ReplayReport, vehicle: &VehicleParameters) -> Vec<Caveat> {
         Phrase::new(
             "no replay of a recorder has been compared with a measured path yet: its scatter is that of rounding, \
              speed, steering ratio, friction and moment of the contact, as they are assumed",
-            "Noch ist keine Nachfahrt eines Datenspeichers mit einem gemessenen Weg verglichen: ihre Streuung ist \
-             die von Rundung, Geschwindigkeit, Lenkübersetzung, Reibung und Zeitpunkt des Kontakts, wie sie \
+            "Noch ist keine Nachrechnung eines Datenspeichers mit einem gemessenen Weg verglichen: ihre Streuung \
+             ist die von Rundung, Geschwindigkeit, Lenkübersetzung, Reibung und Zeitpunkt des Kontakts, wie sie \
              angenommen sind",
         ),
     );
