@@ -208,7 +208,9 @@ fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, Cl
         }
         for variant in &case.variants {
             let mark = if variant.name == case.shown { " (shown)" } else { "" };
-            writeln!(out, "variant {}{mark}: {} questions", variant.name, variant.questions.len())?;
+            let n = variant.questions.len();
+            let noun = if n == 1 { "question" } else { "questions" };
+            writeln!(out, "variant {}{mark}: {n} {noun}", variant.name)?;
             for line in variant.notes.lines() {
                 writeln!(out, "  {}", within_line(line))?;
             }

@@ -163,7 +163,7 @@ impl Report {
         let empty = self.sections.iter().flat_map(|section| &section.rows);
         let empty = empty.filter(|(_, cells)| is_no_data(cells)).count();
         if empty > 0 {
-            doubts.push(format!("{empty} events or tables contain no recorded data"));
+            doubts.push(format!("events and tables without recorded data: {empty}"));
         }
         doubts
     }

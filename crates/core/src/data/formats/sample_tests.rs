@@ -45,7 +45,7 @@ fn a_report_of_a_recorder_has_its_numbers() {
     assert_eq!(before.is_anti_lock_active.iter().filter(|on| **on).count(), 2);
     let speed = record.speed_before.unwrap();
     assert!((speed.speed_m_s - 23.0 * MPH).abs() < 1e-9 && speed.at_s == 0.0, "{speed:?}");
-    assert_eq!(record.doubts, ["1 events or tables contain no recorded data"]);
+    assert_eq!(record.doubts, ["events and tables without recorded data: 1"]);
     assert!(RecorderRecord::read(&sample("cdr-report.csv"), Some(2)).is_err());
 }
 
