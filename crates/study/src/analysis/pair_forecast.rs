@@ -96,6 +96,8 @@ struct Drawn {
     vehicles: Vec<DrawnVehicle>,
     /// The network of the vehicle at its median.
     median: Predictor,
+    /// How far that one holds.
+    of_median: Applicability,
     applicabilities: Vec<Applicability>,
 }
 
@@ -191,7 +193,7 @@ pub fn forecast_both(
         force: first_forces.prediction.clone(),
         n_vehicles: drawn[0].unknown.as_ref().map_or(0, VehicleDraws::len),
         sensitivity,
-        applicability: usual(drawn[0].applicabilities.iter().collect()),
+        applicability: of_drawn(&drawn[0].applicabilities, &drawn[0].of_median),
         both: Some(Box::new(both)),
     }))
 }
@@ -232,9 +234,9 @@ impl BothVehiclesQuestion<'_> {
         let (vehicles, mut applicabilities): (Vec<_>, Vec<_>) = all?.into_iter().unzip();
         // Where the road alone is drawn, the network is judged on the one that is meant.
         if applicabilities.is_empty() || !is_whole {
-            applicabilities = vec![of_median];
+            applicabilities = vec![of_median.clone()];
         }
-        Ok(Drawn { unknown, vehicles, median, applicabilities })
+        Ok(Drawn { unknown, vehicles, median, of_median, applicabilities })
     }
 
     /// Inputs of a vehicle under the usual force.
@@ -250,6 +252,12 @@ impl BothVehiclesQuestion<'_> {
         };
         inputs.ok_or(MotionForecastError::Diverged)
     }
+}
+
+/// How far the network holds over the vehicles that were drawn. What lies outside is told of the vehicle as it is
+/// by its data sheet: a value that was drawn is none of it.
+fn of_drawn(drawn: &[Applicability], by_sheet: &Applicability) -> Applicability {
+    Applicability { outside: by_sheet.outside.clone(), ..usual(drawn.iter().collect()) }
 }
 
 /// The force on the striking vehicle of a force on the struck one.
@@ -288,4 +296,25 @@ fn one_vehicle(
     let SettledDraws { distribution, outcome, rest } =
         SettledDraws::new(draws, [1, 1], n_instants, duration_s, start_rad)?;
     Some(OneVehicle { distribution, central, outcome, rest: until_rest.then_some(rest) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_networks::response::OutsideDomain;
+
+    /// “front axle load share is 0.6290” was told of a car that has 0.605 by its sheet: it was that of a draw.
+    #[test]
+    fn what_lies_outside_is_told_of_the_vehicle_and_not_of_a_draw() {
+        let of = |value, at: Option<f64>| {
+            let quantity = "front axle load share";
+            let outside = at.map(|value| OutsideDomain { quantity, value, range: [0.43, 0.628] });
+            Applicability { value, distance: 1.0 - value, outside: outside.into_iter().collect() }
+        };
+        let drawn = [of(1.0, None), of(0.8, Some(0.629)), of(0.6, Some(0.63))];
+        let told = of_drawn(&drawn, &of(1.0, None));
+        assert!((told.value - 0.8).abs() < 1e-12 && told.outside.is_empty(), "{told:?}");
+        let by_sheet = of(0.7, Some(0.64));
+        assert_eq!(of_drawn(&drawn, &by_sheet).outside, by_sheet.outside);
+    }
 }
