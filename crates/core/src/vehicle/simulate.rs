@@ -153,7 +153,7 @@ impl MotionFlag {
         let at = |time_s: f64| PhraseValue::fixed(Quantity::Time, time_s, 2);
         match *self {
             Self::WheelLift { wheel, time_s } => Phrase::new(
-                "wheel lift: {0} carries no load at {1}",
+                "the {0} wheel carries no load at {1}",
                 "Das Rad {0} ist bei {1} ohne Last",
             )
             .with(PhraseValue::Term(wheel.label().to_owned()))
@@ -166,7 +166,7 @@ impl MotionFlag {
             .with(PhraseValue::fixed(Quantity::Angle, roll_rad, 1).in_unit("deg"))
             .with(at(time_s)),
             Self::EnergyGain { time_s } => Phrase::new(
-                "energy: at {0} the vehicle has gained more than {1} of its energy although nothing \
+                "at {0} the vehicle has gained more than {1} of its energy although nothing \
                  pushes it",
                 "Bei {0} hat das Fahrzeug mehr als {1} seiner Energie hinzugewonnen, obwohl keine Kraft \
                  es antreibt",

@@ -222,6 +222,21 @@ mod tests {
     use impactlab_core::units::{Estimate, Language, NumberFormat, UnitSystem};
     use impactlab_core::vehicle::Wheel;
 
+    /// “warning: wheel lift: wheel lift: rear left carries no load” was told.
+    #[test]
+    fn a_flag_does_not_say_its_kind_twice() {
+        for flag in [
+            MotionFlag::WheelLift { wheel: Wheel::RearLeft, time_s: 0.04 },
+            MotionFlag::RollLimit { time_s: 0.4, roll_rad: 0.6 },
+            MotionFlag::EnergyGain { time_s: 0.4 },
+        ] {
+            let FlagReport { caveat, .. } = FlagReport::from(&flag);
+            let first = caveat.kind.label().split(' ').next().unwrap();
+            let is_prefix = caveat.text.split_once(": ").is_some_and(|(of, _)| of.contains(first));
+            assert!(!is_prefix, "{caveat}");
+        }
+    }
+
     #[test]
     fn positions_have_a_probability_until_the_vehicles_meet_again_in_more_than_a_few_draws() {
         let flag = |probability, from_s| FlagReport {
