@@ -278,7 +278,7 @@ impl PitRow {
 /// What the driver of a striking car does who turns to a side, 1 to the left and −1 to the right.
 fn turning_in(side: f64) -> Ending {
     let driver = PitDriver {
-        side: if side > 0.0 { TurnSide::Left } else { TurnSide::Right },
+        side: Some(if side > 0.0 { TurnSide::Left } else { TurnSide::Right }),
         end: Some(PitEnd::Brake),
         longest_s: Some(LONGEST_PUSH_S),
         ..PitDriver::default()
@@ -351,7 +351,7 @@ mod tests {
         let ending = scenario.ending.as_ref().unwrap();
         assert!(ending.esc.is_some() && ending.brake.is_some() && ending.countersteer.is_none());
         let striking = scenario.striking_ending.as_ref().unwrap().pit.unwrap();
-        assert_eq!((striking.side, striking.end), (TurnSide::Left, Some(PitEnd::Brake)));
+        assert_eq!((striking.side, striking.end), (Some(TurnSide::Left), Some(PitEnd::Brake)));
         let geometry = scenario.geometry().unwrap();
         let [x_m, y_m] = geometry.struck.body_from_world(geometry.contact_point_world_m);
         let slides = |input| match input {

@@ -144,7 +144,10 @@ fn pit_fields(ui: &mut Ui, driver: &mut Option<PitDriver>, units: UnitSystem) {
     let usual_rad = usual.steering_wheel_rad;
     field("steering wheel, to the left", angle_rad, usual_rad, &STEERING_WHEEL_ANGLE);
     if driver.steering_wheel_rad.is_none() {
-        choice_field(ui, "to the side", &mut driver.side, TurnSide::ALL, TurnSide::word);
+        let sides: Vec<_> =
+            [None].into_iter().chain(TurnSide::ALL.iter().copied().map(Some)).collect();
+        let word = |side: Option<TurnSide>| side.map_or("of the other car", TurnSide::word);
+        choice_field(ui, "to the side", &mut driver.side, &sides, word);
     }
     let turn_s = &mut driver.turn_s;
     optional_field(ui, "turned within", turn_s, usual.turn_s, &BRAKE_RISE, units);

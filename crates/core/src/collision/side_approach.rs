@@ -1,7 +1,11 @@
 //! How a vehicle that is struck in a side is approached, in the words of a driver: from where on its
 //! side, how much faster, and how fast across.
 
-use crate::collision::{ContactLocation, Scenario, Side};
+use crate::collision::{ContactLocation, Scenario, ScenarioGeometry, Side};
+use crate::vehicle::TurnSide;
+
+/// Distance from the middle line of the striking vehicle within which a contact lies on neither side, m.
+const MIDDLE_M: f64 = 1e-6;
 
 /// The approach to a vehicle that is struck in its left or right side, in axes along its heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +16,19 @@ pub struct SideApproach {
     pub faster_m_s: f64,
     /// Speed of the striking vehicle across that heading, relative to the struck one and towards it, m/s.
     pub closing_m_s: f64,
+}
+
+impl ScenarioGeometry {
+    /// The side of the striking vehicle on which it touches the other one; `None` for a contact on its middle
+    /// line.
+    pub fn side_of_struck(&self) -> Option<TurnSide> {
+        let [_, left_m] = self.striking.body_from_world(self.contact_point_world_m);
+        match left_m {
+            _ if left_m.abs() < MIDDLE_M => None,
+            _ if left_m > 0.0 => Some(TurnSide::Left),
+            _ => Some(TurnSide::Right),
+        }
+    }
 }
 
 impl Scenario {
@@ -91,6 +108,30 @@ mod tests {
             let across = relative[0] * left[0] + relative[1] * left[1];
             assert_relative_eq!(across, 3.0 * towards, epsilon = 1e-12);
         }
+    }
+
+    #[test]
+    fn the_other_car_is_where_it_is_touched_whatever_the_frame_and_the_mirror() {
+        for turn_rad in [0.0, 0.8, -2.5] {
+            for (side, mirror) in [(Side::Right, 1.0), (Side::Left, -1.0)] {
+                for (between_deg, expected) in [(18.0, 1.0), (-8.0, 1.0), (165.0, -1.0)] {
+                    let mut scenario = Scenario::example();
+                    scenario.struck.heading_rad = turn_rad;
+                    scenario.striking.heading_rad =
+                        turn_rad + mirror * f64::to_radians(between_deg);
+                    scenario.contact.location = ContactLocation::Side { side, offset_m: -0.4 };
+                    let found = scenario.geometry().unwrap().side_of_struck().unwrap();
+                    assert_eq!(
+                        found.sign(),
+                        mirror * expected,
+                        "{turn_rad} {side:?} {between_deg}"
+                    );
+                }
+            }
+        }
+        let mut head_on = Scenario::example();
+        head_on.striking.heading_rad = std::f64::consts::FRAC_PI_2;
+        assert_eq!(head_on.geometry().unwrap().side_of_struck(), None, "flush with the flank");
     }
 
     #[test]

@@ -140,7 +140,10 @@ pub(super) fn starts(
     let mut struck = start(&scenario.struck, &settings.struck, &geometry.struck);
     struck.controls = settings.ending.controls(&struck.vehicle);
     let mut striking = start(&scenario.striking, &settings.striking, &geometry.striking);
-    let striking_ending = scenario.striking_ending.clone().unwrap_or_default();
+    let mut striking_ending = scenario.striking_ending.clone().unwrap_or_default();
+    if let Some(driver) = &mut striking_ending.pit {
+        driver.side = driver.side.or_else(|| geometry.side_of_struck());
+    }
     striking.controls = striking_ending.controls(&striking.vehicle);
     Ok(([struck, striking], geometry.normal_angle_world_rad))
 }

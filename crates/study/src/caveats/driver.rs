@@ -4,6 +4,7 @@ use crate::{MotionSource, SimulateRequest, StudyError};
 use impactlab_core::collision::Scenario;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue};
+use impactlab_core::vehicle::PitDriver;
 
 /// What nobody has said of the drivers of both vehicles, and whether one of a PIT turns the wrong way.
 ///
@@ -26,15 +27,14 @@ pub(crate) fn open_drivers(question: &SimulateRequest) -> Result<Vec<Caveat>, St
         .collect())
 }
 
-/// A driver of a PIT who turns away from the car that he strikes, as to the left where his side was not
-/// said and the other car is to his right.
+/// A driver of a PIT who is said to turn away from the car that he strikes.
 fn turns_away(scenario: &Scenario) -> Option<Caveat> {
-    let (to_left_of_struck, _) = scenario.struck_from_beside()?;
-    let driver = scenario.striking_ending.as_ref()?.pit.as_ref()?;
-    let between_rad = scenario.striking.heading_rad - scenario.struck.heading_rad;
-    let towards = to_left_of_struck * between_rad.cos().signum();
-    (towards * driver.acting().steering_wheel_rad < 0.0).then(|| {
-        let side = if towards > 0.0 { "left" } else { "right" };
+    let driver = scenario.striking_ending.as_ref()?.pit?;
+    let towards = scenario.geometry().ok()?.side_of_struck()?;
+    let side = driver.side.or(Some(towards));
+    let steers_rad = PitDriver { side, ..driver }.acting().steering_wheel_rad;
+    (towards.sign() * steers_rad < 0.0).then(|| {
+        let side = towards.word();
         let text = Phrase::new(
             "the driver of the striking vehicle turns away from the other car, which is to his {0}; \
              pit_side or the sign of pit_steering_wheel in [bullet_ending] of the scenario says to which \
@@ -108,7 +108,7 @@ mod tests {
     use crate::ScenarioChoice;
     use crate::analysis::PulseSetup;
     use impactlab_core::collision::{ContactLocation, Scenario, Side};
-    use impactlab_core::vehicle::{Ending, PitDriver, TurnSide};
+    use impactlab_core::vehicle::{Ending, TurnSide};
 
     fn asked(scenario: Scenario) -> SimulateRequest {
         let scenario = ScenarioChoice::Inline(Box::new(scenario));
@@ -140,10 +140,10 @@ mod tests {
         let alone = SimulateRequest { one_contact: true, ..timed };
         assert_eq!(open_drivers(&alone).unwrap(), []);
     }
-    /// Without a side he turned to the left, also where the struck car was to his right, without a word.
+    /// Without a side he turned to the left, also where the struck car was to his right. He turns towards it.
     #[test]
     fn a_driver_of_a_pit_who_turns_away_from_the_other_car_is_told_of() {
-        let found = |mirrored: bool, side: TurnSide| {
+        let found = |mirrored: bool, side: Option<TurnSide>| {
             let pit = Some(PitDriver { side, ..PitDriver::default() });
             let mut scenario = Scenario {
                 striking_ending: Some(Ending { pit, ..Ending::default() }),
@@ -161,8 +161,9 @@ mod tests {
         for (mirrored, towards, away) in
             [(false, TurnSide::Left, TurnSide::Right), (true, TurnSide::Right, TurnSide::Left)]
         {
-            assert_eq!(found(mirrored, towards), [], "{mirrored}");
-            let [told]: [Caveat; 1] = found(mirrored, away).try_into().unwrap();
+            assert_eq!(found(mirrored, Some(towards)), [], "{mirrored}");
+            assert_eq!(found(mirrored, None), [], "{mirrored}");
+            let [told]: [Caveat; 1] = found(mirrored, Some(away)).try_into().unwrap();
             assert_eq!(told.kind, CaveatKind::DoubtfulData, "{told:?}");
         }
     }

@@ -10,7 +10,7 @@
 //!                                 # "straighten" or "keep_pushing", or it is "unknown"; numbers of
 //!                                 # PitDriver: pit_…
 //! pit_steering_wheel_deg = 135    # optional, positive to the left
-//! pit_side = "right"              # optional, without the angle; "left"
+//! pit_side = "right"              # optional, without the angle; "left"; else where the other car is
 //! pit_axle = "rear"               # optional; "front", "all"
 //! pit_longest_s = 1.5             # optional
 //! ```
@@ -95,7 +95,7 @@ pub(in crate::vehicle) fn read_pit(
     let mut driver = PitDriver::default();
     let mut given = read_numbers(section, "pit", driver.numbers())?;
     if let Some(idx) = section.choice("pit_side", TurnSide::VARIANTS)? {
-        driver.side = TurnSide::ALL.get(idx).copied().unwrap_or_default();
+        driver.side = TurnSide::ALL.get(idx).copied();
         given = Some(section.last_key());
         if driver.steering_wheel_rad.is_some() {
             return Err(section.conflict("pit_steering_wheel"));
@@ -139,8 +139,8 @@ pub(in crate::vehicle) fn entries(ending: &Ending) -> Entries {
     if let Some(driver) = &ending.pit {
         let end = driver.end.map_or(UNKNOWN_END, PitEnd::word);
         add("pit", end.into(), values(driver.ranges()));
-        if driver.steering_wheel_rad.is_none() {
-            entries.push(("pit_side".to_owned(), driver.side.word().into()));
+        if let (None, Some(side)) = (driver.steering_wheel_rad, driver.side) {
+            entries.push(("pit_side".to_owned(), side.word().into()));
         }
         entries.push(("pit_axle".to_owned(), driver.axle.word().into()));
     }
@@ -199,7 +199,7 @@ mod tests {
         let usual = read(text).unwrap();
         assert_eq!(usual.esc.unwrap().rise_s, Some(0.2));
         let pit = usual.pit.unwrap();
-        assert_eq!((pit.end, pit.side), (Some(PitEnd::Brake), TurnSide::Right));
+        assert_eq!((pit.end, pit.side), (Some(PitEnd::Brake), Some(TurnSide::Right)));
         for ending in [&nothing, &usual] {
             assert_eq!(&read(&written(ending)).unwrap(), ending, "{}", written(ending));
             let json = serde_json::to_string(ending).unwrap();

@@ -103,15 +103,11 @@ impl TurnSide {
     }
 
     /// 1 to the left, −1 to the right.
-    fn sign(self) -> f64 {
+    pub fn sign(self) -> f64 {
         match self {
             Self::Left => 1.0,
             Self::Right => -1.0,
         }
-    }
-
-    fn is_left(&self) -> bool {
-        *self == Self::Left
     }
 }
 
@@ -123,9 +119,10 @@ pub struct PitDriver {
     /// given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_s: Option<f64>,
-    /// The side to which the driver turns, where the angle of the steering wheel does not say it.
-    #[serde(skip_serializing_if = "TurnSide::is_left")]
-    pub side: TurnSide,
+    /// The side to which the driver turns, where the angle of the steering wheel does not say it; if not given,
+    /// that on which the other car is at the first contact of a scenario, and else the left.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side: Option<TurnSide>,
     /// Angle of the steering wheel, rad, positive to the left: 90° to 180° to either side, 135° to `side`
     /// if not given.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -183,7 +180,7 @@ impl PitDriver {
     /// probability.
     pub fn drawn(&self, z: [f64; Self::N_DRAWN]) -> Self {
         let [angle, turn, acceleration, struck_turn, end] = z;
-        let angle_rad = (self.side.sign() * uniform(angle, [90.0, 180.0])).to_radians();
+        let angle_rad = (self.sign() * uniform(angle, [90.0, 180.0])).to_radians();
         let acceleration_m_s2 = uniform(acceleration, [2.0, 4.0]);
         let struck_turn_rad = uniform(struck_turn, [30.0, 90.0]).to_radians();
         let n_ends = PitEnd::ALL.len();
@@ -196,6 +193,10 @@ impl PitDriver {
             end: self.end.or(Some(PitEnd::ALL[end_idx.min(n_ends - 1)])),
             ..*self
         }
+    }
+
+    fn sign(&self) -> f64 {
+        self.side.unwrap_or_default().sign()
     }
 
     /// What [`PitDriver::drawn`] draws, in words.
@@ -226,7 +227,7 @@ impl PitDriver {
 
     /// The driver with usual values where nothing is stated.
     pub fn acting(&self) -> ActingPitDriver {
-        let usual_rad = (self.side.sign() * 135.0).to_radians();
+        let usual_rad = (self.sign() * 135.0).to_radians();
         ActingPitDriver {
             start_s: self.start_s.unwrap_or(0.0),
             steering_wheel_rad: self.steering_wheel_rad.unwrap_or(usual_rad),

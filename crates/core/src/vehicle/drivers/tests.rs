@@ -384,7 +384,7 @@ fn what_is_stated_of_a_driver_is_not_drawn() {
 #[test]
 fn a_driver_who_is_drawn_turns_to_the_side_that_is_stated() {
     for (side, sign) in [(TurnSide::Left, 1.0), (TurnSide::Right, -1.0)] {
-        let driver = PitDriver { side, ..PitDriver::default() };
+        let driver = PitDriver { side: Some(side), ..PitDriver::default() };
         let usual_rad = driver.acting().steering_wheel_rad;
         let drawn_rad = driver.drawn([1.3; PitDriver::N_DRAWN]).acting().steering_wheel_rad;
         assert!(usual_rad * sign > 0.0 && drawn_rad * sign > usual_rad * sign, "{side:?}");
