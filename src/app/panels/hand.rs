@@ -41,7 +41,7 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let preview = session.reconstruction.preview.as_ref();
             points_ui(ui, request, preview.map(|preview| &preview.evidence));
             Grid::new("hand points").num_columns(4).show(ui, |ui| {
-                let (id, units) = (ui.id().with("next point by hand"), view.units);
+                let (id, units) = (ui.scope_id().with("next point by hand"), view.units);
                 let rows = PointRows { id, range: &HAND_COORDINATE, units, is_narrow: false };
                 rows.draw(ui, &mut request.points_m);
             });

@@ -19,7 +19,7 @@ use impactlab_core::data::{ForceHistory, Outcome, check_contact_within};
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_core::ranges::{FORECAST_DURATION, REST_LIMIT};
 use impactlab_core::vehicle::{
-    ContactLoad, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
+    ContactLoad, Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
 };
 use impactlab_networks::force::ForcePrediction;
 use impactlab_networks::learning::LearningError;
@@ -150,16 +150,7 @@ pub fn forecast_both(
             .ok_or(MotionForecastError::Diverged)
     };
     let (struck, striking) = (of_vehicle(0)?, of_vehicle(1)?);
-    let sensitivity = drawn[0].unknown.as_ref().map_or_else(Vec::new, |draws| {
-        let mut ends = vec![None; draws.len()];
-        for draw in &found.draws {
-            let end = draw.states[0].last().map(|state| [state.x_m, state.y_m, state.yaw_rad]);
-            if let Some(place) = ends.get_mut(draw.number) {
-                *place = end;
-            }
-        }
-        draws.sensitivities(&ends)
-    });
+    let sensitivity = sensitivities(drawn[0].unknown.as_ref(), &found);
     let paths = |i: usize| -> Vec<Vec<Pose>> {
         found
             .draws
@@ -196,6 +187,19 @@ pub fn forecast_both(
         applicability: of_drawn(&drawn[0].applicabilities, &drawn[0].of_median),
         both: Some(Box::new(both)),
     }))
+}
+
+/// Which estimates of the struck vehicle the end of its motion depends on; none if they were not drawn.
+fn sensitivities(unknown: Option<&VehicleDraws>, found: &PairForecast) -> Vec<Sensitivity> {
+    let Some(draws) = unknown else { return Vec::new() };
+    let mut ends = vec![None; draws.len()];
+    for draw in &found.draws {
+        let end = draw.states[0].last().map(|state| [state.x_m, state.y_m, state.yaw_rad]);
+        if let Some(place) = ends.get_mut(draw.number) {
+            *place = end;
+        }
+    }
+    draws.sensitivities(&ends)
 }
 
 impl BothVehiclesQuestion<'_> {

@@ -159,7 +159,7 @@ impl Fields for FieldRows<'_> {
             self.command = Some(ReconstructionCommand::AddPoints(mark.filter(|_| !is_adding)));
         }
         self.ui.end_row();
-        let id = self.ui.id().with(("next point", self.item));
+        let id = self.ui.scope_id().with(("next point", self.item));
         let (range, units, is_narrow) = (&field.range, self.units, self.is_narrow);
         PointRows { id, range, units, is_narrow }.draw(self.ui, points_m);
     }
