@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::data::{
     Channel, ColumnMap, ColumnUse, GeographicPlace, Note, Table, TimeSeries, course, path_speed,
-    steering,
+    signals, steering,
 };
 use crate::units::significant;
 
@@ -33,7 +33,7 @@ pub(super) fn of_numbers(
         steering::note(by_channel, map, series),
         steering::opposed(by_channel, series),
     ];
-    all.into_iter().flatten().collect()
+    all.into_iter().flatten().chain(signals::notes(by_channel, series)).collect()
 }
 
 /// That x and y without a unit are longitude and latitude, as maps write them: in metres the vehicle stands, and in degrees

@@ -61,6 +61,7 @@ mod refused;
 mod rows;
 mod series;
 mod si_values;
+mod signals;
 mod slow_columns;
 mod spelling;
 mod stated_side;
