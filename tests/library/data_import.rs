@@ -345,6 +345,25 @@ fn sums_signs_clock_and_axes_are_read_as_the_map_says() {
     );
 }
 
+/// A transducer at its limit, a number that stands for none, and two pulses that are as they are.
+#[test]
+fn a_force_that_is_cut_off_and_a_lone_sample_are_said() {
+    let kinds = |force_kn: &dyn Fn(f64) -> f64| {
+        let row = |i: u32| format!("{i},{},0\n", force_kn(f64::from(i)));
+        let rows: String = (0..=150).map(row).collect();
+        let loaded = read(format!("t [ms],fx [kN],fy [kN]\n{rows}"), "").unwrap();
+        check_file(&loaded).iter().map(|flag| flag.kind).collect::<Vec<_>>()
+    };
+    let pulse =
+        |t: f64| if t < 100.0 { 60.0 * (t * std::f64::consts::PI / 100.0).sin() } else { 0.0 };
+    assert_eq!(kinds(&pulse), []);
+    assert_eq!(kinds(&|t| pulse(t).min(30.0)), [FlagKind::Saturated]);
+    assert_eq!(kinds(&|t| if t == 130.0 { -9.999 } else { pulse(t) }), [FlagKind::Spike]);
+    // A pulse in whole kN, and one that is constant.
+    assert_eq!(kinds(&|t| pulse(t).round()), []);
+    assert_eq!(kinds(&|t| if t > 20.0 && t < 90.0 { 40.0 } else { 0.0 }), []);
+}
+
 #[test]
 fn a_60_n_crash_is_said_in_words() {
     let pulse = |unit: &str| {

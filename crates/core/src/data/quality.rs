@@ -33,6 +33,16 @@ const SPIKE_SIGMA: f64 = 20.0;
 /// Smallest number of samples in contact with which spikes are looked for; with fewer, a spike
 /// cannot be distinguished from a short pulse.
 const SPIKE_MIN_SAMPLES: usize = 40;
+/// The same of a sample whose neighbours differ by less than a share of the peak: one before or after the contact, as a
+/// number that stands for none. Those of the shipped data are below 0.09.
+const ISOLATED: f64 = 0.12;
+const ISOLATED_RANGE: f64 = 0.01;
+/// Rows from which a force stays at its largest value, and the least share of the peak that this is.
+const HELD_ROWS: usize = 5;
+const HELD_SHARE_OF_PEAK: f64 = 0.3;
+/// Share of that value that the rows beside them have at least, and by how much it is less half as many rows farther.
+const FLANK: f64 = 0.5;
+const STEEP: f64 = 0.05;
 /// Mean force before contact above which a warning is raised, as a share of the peak.
 const DRIFT: f64 = 0.05;
 /// Share of the peak above which the force has certainly begun.
@@ -86,6 +96,9 @@ pub enum FlagKind {
     NotSeparated,
     /// The force at the first row, as a share of the peak: what came before it is not in the file.
     BegunBefore,
+    /// Largest value of a component of the force, N, at which it stays over several rows between steep flanks: that of a
+    /// transducer at its limit.
+    Saturated,
     /// Distance from one row of a motion to the next, m, which no vehicle goes in the time.
     PathJump,
     /// Largest speed along a path, m/s, which is that of no collision.
@@ -123,6 +136,7 @@ impl FlagKind {
             Self::NoForce => "no force",
             Self::NotSeparated => "cut",
             Self::BegunBefore => "begun",
+            Self::Saturated => "limit?",
             Self::PathJump => "jump",
             Self::SlowPath => "slow",
             Self::FastPath => "fast",
@@ -230,6 +244,7 @@ pub fn check_file(loaded: &Loaded) -> Vec<Flag> {
         return flags;
     };
     flags.extend(begun_before(&force, peak_n));
+    flags.extend(saturated(&force, peak_n));
     let stated = |kind, value, limit| Flag { value, limit, ..stated(kind, Severity::Warning) };
     if peak_n < SMALL_FORCE_N {
         flags.push(stated(FlagKind::SmallForce, peak_n, SMALL_FORCE_N).at(peak_at));
@@ -313,6 +328,44 @@ fn begun_before(force: &ForceHistory, peak_n: f64) -> Option<Flag> {
     Flag::beyond(kind, severity, first_n / peak_n, ONSET_SHARE_OF_PEAK)
 }
 
+/// A component of the force, of a considerable share of the peak, that stays at its largest value.
+fn saturated(force: &ForceHistory, peak_n: f64) -> Option<Flag> {
+    let axes = [&force.fx_n, &force.fy_n];
+    let (row_idx, limit_n) = axes.into_iter().find_map(|axis| held_peak(axis, peak_n))?;
+    let flag = Flag { value: limit_n, ..stated(FlagKind::Saturated, Severity::Warning) };
+    Some(flag.at(force.time_s.get(row_idx).copied()?))
+}
+
+/// The row from which a component stays at its largest size, and this size, N. A pulse that is constant from its first
+/// row to its last one does so too, and one whose numbers are coarse about its peak; neither has flanks that are cut off.
+fn held_peak(axis: &[f64], peak_n: f64) -> Option<(usize, f64)> {
+    let limit_n = axis.iter().fold(0.0, |of: f64, value| of.max(value.abs()));
+    let is_at_limit = |value: &&f64| value.abs() >= limit_n;
+    let from = axis.iter().position(|value| is_at_limit(&value))?;
+    let n_rows = axis.iter().skip(from).take_while(is_at_limit).count();
+    if n_rows < HELD_ROWS || limit_n < HELD_SHARE_OF_PEAK * peak_n {
+        return None;
+    }
+    let steps_n = axis.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let finest_n = steps_n.filter(|step_n| *step_n > 0.0).fold(f64::INFINITY, f64::min);
+    let is_whole = |value: &f64| (value / finest_n - (value / finest_n).round()).abs() < 1e-3;
+    // Between numbers that are so coarse, a peak that is round stays at its value and leaves it by one step.
+    let rounding_n = if axis.iter().all(is_whole) { 3.0 * finest_n } else { 0.0 };
+    let is_cut = |near: Option<usize>, far: usize| {
+        let size_n = |idx: usize| axis.get(idx).map(|value| value.abs());
+        let (Some(near_n), Some(far_n)) = (near.and_then(size_n), size_n(far)) else {
+            return false;
+        };
+        (FLANK * limit_n..limit_n - rounding_n).contains(&near_n) && far_n < (1.0 - STEEP) * limit_n
+    };
+    let (before, after) = (from.checked_sub(1), from + n_rows);
+    // As far as the record goes.
+    let far_before = from.saturating_sub(1 + n_rows / 2);
+    let far_after = (after + n_rows / 2).min(axis.len() - 1);
+    let is_held = is_cut(before, far_before) && is_cut(Some(after), far_after);
+    is_held.then_some((from, limit_n))
+}
+
 /// Mean force over the first half of the samples before the force has certainly begun, as a share
 /// of the peak; 0 if there are too few of them.
 fn drift(force: &ForceHistory, magnitude_n: &[f64], peak_n: f64) -> f64 {
@@ -353,7 +406,9 @@ fn spike(force: &ForceHistory, magnitude_n: &[f64]) -> Option<Flag> {
             let excess = (deviation - range) / peak_of_others;
             let is_worse = worst.is_none_or(|flag| flag.value < excess);
             if *deviation > SPIKE_SIGMA * sigma && is_worse {
-                let flag = Flag::beyond(FlagKind::Spike, Severity::Warning, excess, SPIKE);
+                let is_isolated = *range < ISOLATED_RANGE * peak_of_others;
+                let limit = if is_isolated { ISOLATED } else { SPIKE };
+                let flag = Flag::beyond(FlagKind::Spike, Severity::Warning, excess, limit);
                 let at = force.time_s.get(i + 2).copied().unwrap_or(0.0);
                 worst = flag.map(|flag| flag.at(at)).or(worst);
             }

@@ -60,6 +60,7 @@ impl Flag {
             | FlagKind::NoForce
             | FlagKind::NotSeparated
             | FlagKind::BegunBefore
+            | FlagKind::Saturated
             | FlagKind::Hooked => self.finding_of_force(),
             FlagKind::PathJump | FlagKind::SlowPath | FlagKind::FastPath | FlagKind::YawStep => {
                 self.finding_of_path()
@@ -168,6 +169,13 @@ impl Flag {
                 "In der ersten Zeile beträgt die Kraft {0} des Höchstwerts: Was vorher war, fehlt im Stoßantrieb",
             )
             .with(PhraseValue::fixed(Quantity::Ratio, self.value, 0).in_unit("%")),
+            FlagKind::Saturated => Phrase::new(
+                "the force stays at its largest value, {0}, over several rows between steep flanks: its transducer \
+                 was at its limit, and the impulse is too small",
+                "Die Kraft verharrt zwischen steilen Flanken mehrere Zeilen lang bei ihrem Höchstwert {0}: Der \
+                 Aufnehmer war an seiner Messgrenze, und der Stoßantrieb ist zu klein",
+            )
+            .with(value(Quantity::Force)),
             _ => Phrase::new(
                 "the striking vehicle's corner stays caught",
                 "Die Ecke des stoßenden Fahrzeugs bleibt verhakt",
