@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::report::keys::{is_silent, quantity_of_key};
-use crate::report::language::phrase_of;
+use crate::report::language::{given_name_of, phrase_of};
 use crate::report::numbers::Wording;
 use crate::report::paths::ShownPaths;
 use impactlab_core::units::{significant, trimmed};
@@ -116,7 +116,8 @@ fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
                 return choice;
             }
             let shown = paths.shown(text);
-            phrase_of(wording.language, &shown).unwrap_or(shown)
+            let given = (key == "name").then(|| given_name_of(wording.language, &shown)).flatten();
+            given.or_else(|| phrase_of(wording.language, &shown)).unwrap_or(shown)
         }
         Value::Number(number) if number.is_f64() => {
             let number = number.as_f64().unwrap_or(f64::NAN);

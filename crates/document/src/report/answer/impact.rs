@@ -14,7 +14,8 @@ use impactlab_study::ImpactAnswer;
 pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let question = fill(words.ask_impact, &[("name", &report.name)]);
+    let name = wording.given_name(&report.name);
+    let question = fill(words.ask_impact, &[("name", &name)]);
     let mut blocks = vec![Block::paragraph(question.clone())];
     blocks.extend(report.solution_tables().iter().map(|table| facts_table(table, context)));
     blocks.push(Block::paragraph(words.no_intervals));
@@ -25,7 +26,7 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     let network = report.rival.as_ref().map(|_| Method::ForceNetwork);
     Part {
         kind: words.title_impact.to_owned(),
-        title: format!("{}: {}", words.title_impact, report.name),
+        title: format!("{}: {name}", words.title_impact),
         opinion: Some(opinion_of_impact(report, &question, context)),
         answer: blocks,
         pictures: picture.into_iter().collect(),

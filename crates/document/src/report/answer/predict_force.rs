@@ -15,14 +15,15 @@ use impactlab_study::PredictForceAnswer;
 pub(super) fn part(answer: &PredictForceAnswer, context: Context<'_>) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
-    let question = fill(words.ask_force, &[("name", &report.scenario)]);
+    let name = wording.given_name(&report.scenario);
+    let question = fill(words.ask_force, &[("name", &name)]);
     let mut blocks = vec![Block::paragraph(question.clone())];
     let meaning = words.meaning_force;
     blocks.extend(facts_with_meaning(&report.force_table(), meaning, context));
     blocks.extend(report.course_table().map(|table| facts_table(&table, context)));
     Part {
         kind: words.title_force.to_owned(),
-        title: format!("{}: {}", words.title_force, report.scenario),
+        title: format!("{}: {name}", words.title_force),
         opinion: Some(opinion_of_force(report, &question, context)),
         answer: blocks,
         pictures: vec![picture(answer, wording)],

@@ -28,7 +28,8 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let vehicle = name_in_question(&report.vehicle, &answer.analysis.vehicle, wording);
-    let names = [("name", &*report.scenario), ("vehicle", &vehicle)];
+    let name = wording.given_name(&report.scenario);
+    let names = [("name", &*name), ("vehicle", &vehicle)];
     let question = fill(words.ask_motion, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];
     let courses = report.course_table();
@@ -68,7 +69,7 @@ pub(super) fn part(
     let contact = report.contacts.as_ref().map(|_| Method::ContactLaw);
     Part {
         kind: words.title_motion.to_owned(),
-        title: format!("{}: {}", words.title_motion, report.scenario),
+        title: format!("{}: {name}", words.title_motion),
         opinion: Some(opinion_of_forecast(report, &question, context)),
         answer: blocks,
         of_first_force,

@@ -28,7 +28,8 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let vehicle = name_in_question(&report.vehicle, &answer.analysis.vehicle, wording);
-    let names = [("name", &*report.name), ("vehicle", &vehicle)];
+    let name = wording.given_name(&report.name);
+    let names = [("name", &*name), ("vehicle", &vehicle)];
     let is_alone = is_alone(answer);
     let ask = if is_alone { words.ask_drive } else { words.ask_simulate };
     let question = fill(ask, &names);
@@ -58,7 +59,7 @@ pub(super) fn part(
     let of_car: &str = if is_alone { &car } else { words.struck_vehicle };
     Part {
         kind: words.title_simulate.to_owned(),
-        title: format!("{}: {}", words.title_simulate, report.name),
+        title: format!("{}: {name}", words.title_simulate),
         opinion: Some(opinion_of_simulation(report, &question, context)),
         answer: blocks,
         pictures: pictures(request.site.as_deref(), answer, context),

@@ -897,12 +897,18 @@ pub(super) const TEMPLATES: &[(&str, &str)] = &[
     ("square of {}", "Rechteck über {}"),
 ];
 
-/// Names that the program gives where nobody gave one, without the numbers behind them, with their German ones.
+/// Names that the program gives where nobody gave one, without the numbers behind them, and those of the scenarios
+/// and variants that come with it, with their German ones.
 pub(super) const GIVEN_NAMES: &[(&str, &str)] = &[
     ("atlas", "Atlas"),
+    ("Barrier, Carpenter and Welcher", "Barriere nach Carpenter und Welcher"),
     ("base", "Grundfall"),
+    ("coasts", "rollt aus"),
+    ("driver brakes", "Fahrer bremst"),
     ("friction zone", "Reibwertzone"),
     ("kerb", "Bordstein"),
     ("lane", "Fahrstreifen"),
+    ("PIT, right rear quarter", "PIT, hinten rechts"),
+    ("struck vehicle of 1500 kg", "gestoßenes Fahrzeug mit 1500 kg"),
     ("untitled", "ohne Titel"),
 ];

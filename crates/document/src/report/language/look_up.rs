@@ -116,14 +116,17 @@ mod tests {
     use super::*;
     use crate::figure::{ReplayCurve, WheelInput};
     use crate::report::keys::bare;
+    use impactlab_core::collision::{SCENARIO_PRESETS, Scenario};
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
     use impactlab_core::vehicle::{BuiltInVehicle, built_in_vehicle};
     use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
+    use impactlab_study::case_file::CaseFile;
     use impactlab_study::{Measurements, json_kinds};
     use impactlab_sweep::atlas::Measure;
     use serde_json::Value;
     use std::collections::BTreeSet;
+    use std::path::Path;
 
     #[test]
     fn a_source_is_what_the_last_bracket_holds() {
@@ -142,6 +145,21 @@ mod tests {
         assert_eq!(german("base").as_deref(), Some("Grundfall"));
         assert_eq!(["oncoming lane 1", "base b"].map(german), [None, None]);
         assert_eq!(given_name_of(Language::En, "base"), None);
+    }
+
+    /// “PIT, right rear quarter” stood in every heading of a German report.
+    #[test]
+    fn scenarios_and_variants_of_the_program_have_german_names() {
+        let example = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/examples/pit.impactlab");
+        let case = CaseFile::load(Path::new(example)).unwrap();
+        let scenarios = SCENARIO_PRESETS.iter().map(|(id, _)| Path::new(id));
+        let scenarios = scenarios.map(|id| Scenario::preset_or_file(id).unwrap().name);
+        let variants = case.variants.into_iter().map(|variant| variant.name);
+        for name in scenarios.chain(variants) {
+            assert!(given_name_of(Language::De, &name).is_some(), "{name}");
+        }
+        let pit = given_name_of(Language::De, "PIT, right rear quarter");
+        assert_eq!(pit.as_deref(), Some("PIT, hinten rechts"));
     }
 
     #[test]
