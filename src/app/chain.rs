@@ -82,6 +82,35 @@ impl State {
         }
     }
 
+    /// The speed that a reconstruction gives, in the place of the chain where nothing is simulated; `None`
+    /// without evidence.
+    fn reconstruction_link(&self) -> Option<Link> {
+        let request = self.project.reconstruct.as_ref()?;
+        let session = &self.session.reconstruction;
+        let answer = session.answer().filter(|_| !session.is_outdated(Some(request)));
+        let report = answer.map(|answer| &answer.answer.report);
+        let format = NumberFormat::english(self.view.units);
+        let figure = report.and_then(|report| match report.modes.len() {
+            0 | 1 => report.quantities.first().map(|of| {
+                let speed = format.drawn_in_words(of.quantity(), &of.estimate);
+                format!("{} {speed}", of.label())
+            }),
+            n => Some(format!("{n} courses of events")),
+        });
+        let source = match report {
+            Some(_) => "from the evidence, interval of 90 %",
+            None => "Run in the pane Evidence gives the speeds",
+        };
+        Some(Link {
+            title: "Reconstruction",
+            figure,
+            source: source.to_owned(),
+            warnings: warnings(report.map(|report| &report.caveats), self.view.units),
+            is_late: session.run.is_running(),
+            pane: Pane::Speeds,
+        })
+    }
+
     fn subject_link(&self) -> Link {
         let (figure, source, pane) = match &self.project.subject() {
             Some(Subject::Scenario) => {
@@ -200,7 +229,10 @@ pub fn chain_ui(ui: &mut Ui, state: &State, links: &[Link], commands: &mut Vec<C
         }
         let drawn = ui.horizontal_wrapped(|ui| {
             if links.is_empty() {
-                no_case_ui(ui, state.session.shows_doors, commands);
+                match state.reconstruction_link() {
+                    Some(link) => link_ui(ui, &link, commands),
+                    None => no_case_ui(ui, state.session.shows_doors, commands),
+                }
             }
             for (i, link) in links.iter().enumerate() {
                 if i > 0 {

@@ -147,6 +147,9 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
     let choice = state(&harness).project.reconstruct.as_ref().map(|of| of.evidence.clone());
     assert_eq!(choice, Some(EvidenceChoice::File(path)));
+    // “No case chosen, choose a case of the data that are open” stood above the evidence.
+    assert!(harness.query_by_label("No case chosen").is_none());
+    assert!(harness.query_by_label("Reconstruction: –").is_some());
     assert!(!state(&harness).session.playback.is_playing);
 
     run(&mut harness);
@@ -154,6 +157,7 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert!(!is_outdated(&harness));
     let answer = state(&harness).session.reconstruction.answer().expect("an answer");
     assert_eq!(answer.answer.report.n_particles, 60);
+    assert!(harness.query_by_label("Reconstruction: –").is_none());
     for label in ["Play the median", "Items of the evidence: found and expected"] {
         assert!(harness.query_by_label(label).is_some(), "{label}");
     }
