@@ -209,6 +209,7 @@ pub fn duration_text(duration: Duration) -> String {
     let s = duration.as_secs_f64().ceil() as u64;
     match (s / 3600, s / 60 % 60, s % 60) {
         (0, 0, s) => format!("{s} s"),
+        (0, min, 0) => format!("{min} min"),
         (0, min, s) => format!("{min} min {s} s"),
         (h, min, _) => format!("{h} h {min} min"),
     }
@@ -297,6 +298,12 @@ mod tests {
 
     use super::*;
     use impactlab_core::ranges::BODY_MASS;
+
+    #[test]
+    fn a_duration_of_whole_minutes_has_no_seconds() {
+        let text = |seconds| duration_text(Duration::from_secs(seconds));
+        assert_eq!([147, 1500, 7500].map(text), ["2 min 27 s", "25 min", "2 h 5 min"]);
+    }
 
     #[test]
     fn a_number_beyond_the_range_is_kept_and_not_taken() {
