@@ -4,11 +4,14 @@ use std::path::PathBuf;
 
 use crate::app::force::collision_of;
 use crate::app::state::*;
-use crate::app::{Command, Measure, Measurement, Measuring, Pane, Source, Workspace, Workspaces};
+use crate::app::{
+    Command, Measure, Measurement, Measuring, Pane, Source, VariantCommand, Workspace, Workspaces,
+};
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::ModelChoice;
+use impactlab_study::case_file::Variant;
 
 #[test]
 fn project_and_view_survive_a_restart() {
@@ -169,4 +172,17 @@ fn what_was_entered_or_made_for_one_case_is_not_in_the_next() {
     assert_eq!((session.between.span_s, session.report.problem.as_deref()), (None, None));
     assert!(session.other_variants.is_empty());
     assert_eq!(session.n_cases, n_cases + 1, "fields keep what was typed into them");
+}
+
+/// The forms had what was open before, under the name of a case whose variant cannot be read.
+#[test]
+fn a_variant_that_cannot_be_shown_leaves_nothing_of_another_in_the_forms() {
+    let mut state = State::default();
+    state.select(Subject::Scenario);
+    let bad = Variant { name: "bad".to_owned(), view: 3.into(), ..Variant::default() };
+    state.case.file.variants.push(bad.clone());
+    state.change_variant(VariantCommand::Show("bad".to_owned()));
+    assert_eq!(state.project.subject(), None);
+    assert!(state.session.messages.iter().any(|of| of.text.contains("cannot be shown")));
+    assert_eq!(state.case.with_shown(&state.project).variant("bad"), Some(&bad));
 }

@@ -246,6 +246,9 @@ impl State {
                 let why =
                     format!("the variant {name:?} cannot be shown, and stays as it is: {error}");
                 self.say(Severity::Error, why);
+                // What was shown before is of another variant, or of another case.
+                let networks = self.project.networks.clone();
+                self.show_project(Project { networks, ..Project::default() });
             }
         }
     }
