@@ -55,6 +55,7 @@ use crate::evidence::{
 };
 use crate::{Distribution, Latent, LatentValues};
 use impactlab_core::collision::{ContactDistribution, Side};
+use impactlab_core::vehicle::ZONE_FRICTION_LOG_SIGMA;
 use impactlab_core::vehicle::sheet::SheetQuantity;
 
 /// A quantity with its prior distribution.
@@ -106,9 +107,6 @@ const TIRE_FRICTION_SCATTER: f64 = 0.09;
 const LONGITUDINAL_FRICTION_RATIO: f64 = 1.15;
 const LONGITUDINAL_FRICTION_SCATTER: f64 = 0.07;
 
-/// Scatter of the friction of a zone about that which a site says.
-const ZONE_FRICTION_SCATTER: f64 = 0.15;
-
 /// Scatter of the loads that crush both cars about those of their classes: that of a side.
 const CONTACT_STIFFNESS_SCATTER: f64 = 0.4;
 
@@ -140,8 +138,8 @@ impl Prior {
     /// The same for a ground on which there are zones with their own friction.
     #[must_use]
     pub fn with_zones(mut self) -> Self {
-        let reach = (3.0 * ZONE_FRICTION_SCATTER).exp();
-        let factor = log_normal(1.0, ZONE_FRICTION_SCATTER, 1.0 / reach, reach);
+        let reach = (3.0 * ZONE_FRICTION_LOG_SIGMA).exp();
+        let factor = log_normal(1.0, ZONE_FRICTION_LOG_SIGMA, 1.0 / reach, reach);
         self.assume(Latent::ZoneFrictionFactor, factor);
         self
     }

@@ -8,6 +8,10 @@ use crate::ranges::{OutOfRange, POSITION, ROAD_FRICTION};
 /// Most corners of a border: more than any outline in a plan of a scene has.
 pub const MAX_BORDER_CORNERS: usize = 1000;
 
+/// Standard deviation of the logarithm of the friction of zones over that which a site says, in all zones alike:
+/// ours. Grass, gravel and wet patches are known less well than a road.
+pub const ZONE_FRICTION_LOG_SIGMA: f64 = 0.15;
+
 /// Smallest area of a zone, m².
 const LEAST_AREA_M2: f64 = 1e-4;
 
@@ -80,6 +84,15 @@ pub enum FrictionZoneError {
 impl FrictionZone {
     /// What a zone of a survey is called that has no name there.
     pub const UNNAMED: &'static str = "friction zone";
+
+    /// The same with another friction, within what a ground has.
+    ///
+    /// - `factor`: on that which the site says.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let friction = (self.friction * factor).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high);
+        Self { friction, ..self.clone() }
+    }
 
     /// Checks friction and border. Sides of the border may touch each other, as around a hole, but not
     /// cross.

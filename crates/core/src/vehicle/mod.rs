@@ -65,7 +65,9 @@ pub use energy::MAX_ENERGY_GAIN;
 pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
 pub use fixed_object::{FIXED_MASS_KG, FIXED_YAW_INERTIA_KG_M2, FixedObject};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
-pub use friction_zone::{FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, friction_at};
+pub use friction_zone::{
+    FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, ZONE_FRICTION_LOG_SIGMA, friction_at,
+};
 pub(crate) use held_force::HeldForceRun;
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;

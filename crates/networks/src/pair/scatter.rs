@@ -9,7 +9,9 @@ use impactlab_core::collision::contact::{
     stiffness_log_sigma,
 };
 use impactlab_core::numerics::{latin_normals, random_stream};
-use impactlab_core::vehicle::{ClosedLoop, CrushParameters, Manoeuvre, VehicleParameters};
+use impactlab_core::vehicle::{
+    ClosedLoop, CrushParameters, Manoeuvre, VehicleParameters, ZONE_FRICTION_LOG_SIGMA,
+};
 
 /// Bounds of the coefficient of friction between vehicles.
 const CONTACT_FRICTION_RANGE: [f64; 2] = [0.1, 0.9];
@@ -31,6 +33,8 @@ pub struct PairScatter {
     pub elastic_recovery: f64,
     /// Of the logarithm of the friction of the tires of a vehicle.
     pub tire_friction_log: f64,
+    /// Of the logarithm of the friction of all zones of the ground together, which is that of both vehicles.
+    pub zone_friction_log: f64,
     /// Of the logarithm of the cornering stiffness of an axle.
     pub cornering_log: f64,
     /// Of the logarithm of a factor on the steer angle of a vehicle: compliance of its steering.
@@ -58,6 +62,7 @@ impl Default for PairScatter {
             elastic_depth_log: ELASTIC_DEPTH_LOG_SIGMA,
             elastic_recovery: 0.03,
             tire_friction_log: 0.05,
+            zone_friction_log: ZONE_FRICTION_LOG_SIGMA,
             cornering_log: 0.12,
             steer_log: 0.05,
             torque_log: 0.08,
@@ -78,6 +83,7 @@ impl PairScatter {
         elastic_depth_log: 0.0,
         elastic_recovery: 0.0,
         tire_friction_log: 0.0,
+        zone_friction_log: 0.0,
         cornering_log: 0.0,
         steer_log: 0.0,
         torque_log: 0.0,
@@ -97,6 +103,7 @@ impl PairScatter {
             elastic_depth_log: self.elastic_depth_log * factor,
             elastic_recovery: self.elastic_recovery * factor,
             tire_friction_log: self.tire_friction_log * factor,
+            zone_friction_log: self.zone_friction_log * factor,
             cornering_log: self.cornering_log * factor,
             steer_log: self.steer_log * factor,
             torque_log: self.torque_log * factor,
@@ -116,11 +123,12 @@ const N_OF_VEHICLE: usize = 12;
 const N_OF_RESISTANCE: usize = 2;
 
 /// Standard normal values of a draw: friction and recovery of the contact, then both vehicles, then the
-/// resistance of both, then their drivers and systems.
-const N_LATENTS: usize = FIRST_OF_DRIVER + 2 * ClosedLoop::N_DRAWN;
+/// resistance of both, then their drivers and systems, then the zones of the ground.
+const N_LATENTS: usize = ZONE_FRICTION + 1;
 
 const FIRST_OF_RESISTANCE: usize = 2 + 2 * N_OF_VEHICLE;
 const FIRST_OF_DRIVER: usize = FIRST_OF_RESISTANCE + 2 * N_OF_RESISTANCE;
+const ZONE_FRICTION: usize = FIRST_OF_DRIVER + 2 * ClosedLoop::N_DRAWN;
 
 /// Standard normal values of all draws.
 pub(super) struct PairLatents {
@@ -175,8 +183,8 @@ impl PairLatents {
         })
     }
 
-    /// What a driver did, of a draw: the same with factors on steer angles and torques, and with numbers
-    /// of drivers and systems that are not stated.
+    /// What a driver did on which ground, of a draw: the same with factors on steer angles, torques and the
+    /// friction of zones, and with numbers of drivers and systems that are not stated.
     pub fn manoeuvre(
         &self,
         draw: usize,
@@ -192,6 +200,8 @@ impl PairLatents {
             let first = FIRST_OF_DRIVER + vehicle * ClosedLoop::N_DRAWN;
             *closed_loop = closed_loop.drawn(std::array::from_fn(|idx| self.at(draw, first + idx)));
         }
+        let zones = (scatter.zone_friction_log * self.at(draw, ZONE_FRICTION)).exp();
+        drawn.friction_zones.iter_mut().for_each(|zone| *zone = zone.scaled(zones));
         if let Some(history) = &mut drawn.controls.steer {
             history.steer_rad.iter_mut().for_each(|angle| *angle *= steer);
         }
@@ -235,7 +245,7 @@ impl PairLatents {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::vehicle::Preset;
+    use impactlab_core::vehicle::{FrictionZone, Preset};
 
     #[test]
     fn draws_have_the_stated_scatter_and_none_has_the_medians() {
@@ -268,5 +278,32 @@ mod tests {
                 .ln()
         });
         assert!((std(tires.collect()) - scatter.tire_friction_log).abs() < 0.005);
+    }
+
+    /// Zones counted as known exactly, and intervals of what slid over them were too narrow.
+    #[test]
+    fn the_friction_of_zones_is_drawn_and_is_that_of_both_vehicles() {
+        let latents = PairLatents::new(400, 3);
+        let border_m = vec![[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
+        let zone = |name: &str, friction| FrictionZone {
+            name: name.to_owned(),
+            border_m: border_m.clone(),
+            friction,
+        };
+        let friction_zones = vec![zone("ice", 0.1), zone("grass", 0.4)];
+        let median = Manoeuvre { friction_zones, ..Manoeuvre::default() };
+        assert_eq!(latents.manoeuvre(7, 0, &median, &PairScatter::NONE), median);
+        let scatter = PairScatter::default();
+        let mut logs = Vec::new();
+        for draw in 0..400 {
+            let [struck, striking] =
+                [0, 1].map(|i| latents.manoeuvre(draw, i, &median, &scatter).friction_zones);
+            assert_eq!(struck, striking, "one ground");
+            let [ice, grass] = [struck[0].friction / 0.1, struck[1].friction / 0.4];
+            assert!((ice / grass - 1.0).abs() < 1e-12, "all zones alike: {ice} {grass}");
+            logs.push(ice.ln());
+        }
+        let sigma = (logs.iter().map(|log| log * log).sum::<f64>() / 400.0).sqrt();
+        assert!((sigma / ZONE_FRICTION_LOG_SIGMA - 1.0).abs() < 0.03, "{sigma}");
     }
 }

@@ -6,7 +6,7 @@ use crate::prior::towards;
 use crate::{ImpactState, Latent, LatentValues};
 use impactlab_core::collision::{Pulse, PulseShape};
 use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
-use impactlab_core::ranges::{ROAD_FRICTION, STRUCK_TURN};
+use impactlab_core::ranges::STRUCK_TURN;
 use impactlab_core::units::STANDARD_GRAVITY_M_S2;
 use impactlab_core::vehicle::{
     AntiLock, Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DrivenAxle, Ending,
@@ -89,11 +89,7 @@ impl ForwardModel {
     /// - `tire_factor`: f_tire, friction of the tires of the car over that which was measured.
     pub(super) fn zones_under(&self, values: &LatentValues, tire_factor: f64) -> Vec<FrictionZone> {
         let factor = values.get(Latent::ZoneFrictionFactor) * tire_factor;
-        let under = |zone: &FrictionZone| FrictionZone {
-            friction: (zone.friction * factor).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high),
-            ..zone.clone()
-        };
-        self.zones.iter().map(under).collect()
+        self.zones.iter().map(|zone| zone.scaled(factor)).collect()
     }
 
     /// The striking car and what happens to it.

@@ -140,8 +140,8 @@ pub fn forecast_both(
         drawn: [0, 1].map(|i| drawn[i].vehicles.as_slice()),
         first_forces: &loads,
     };
-    let pair_settings =
-        PairSettings { n_draws, seed: settings.seed, scatter: PairScatter::default() };
+    let scatter = scatter(settings.n_vehicles);
+    let pair_settings = PairSettings { n_draws, seed: settings.seed, scatter };
     let Outcome::Complete(found) = forecast_pair(&question_of_pair, &pair_settings, report)? else {
         return Ok(Outcome::Cancelled);
     };
@@ -200,6 +200,13 @@ fn sensitivities(unknown: Option<&VehicleDraws>, found: &PairForecast) -> Vec<Se
         }
     }
     draws.sensitivities(&ends)
+}
+
+/// What is not known of both vehicles and the ground, which is at its median where the vehicles are.
+fn scatter(n_vehicles: usize) -> PairScatter {
+    let usual = PairScatter::default();
+    let zone_friction_log = if n_vehicles > 0 { usual.zone_friction_log } else { 0.0 };
+    PairScatter { zone_friction_log, ..usual }
 }
 
 impl BothVehiclesQuestion<'_> {

@@ -9,6 +9,7 @@ use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{
     ContactPoint, FrictionZone, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters,
+    ZONE_FRICTION_LOG_SIGMA,
 };
 
 use crate::SimulateRequest;
@@ -74,18 +75,22 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
     Some(Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
 }
 
-/// That the friction of zones of the ground counts as known, where that of the road is drawn.
+/// How uncertain the friction of zones of the ground is, where that of the road is drawn.
 pub(crate) fn zones(zones: &[FrictionZone]) -> Option<Caveat> {
     let names: Vec<&str> = zones.iter().map(|zone| zone.name.as_str()).collect();
+    let reach = (NORMAL_QUANTILE_95 * ZONE_FRICTION_LOG_SIGMA).exp();
     let value = Phrase::new(
-        "that of the zones of the site ({0}) is known exactly",
-        "der Wert der Bereiche des Geländes ({0}) gilt als genau bekannt",
+        "zones of the site ({0}), all with {1} to {2} times the friction that it says",
+        "Bereiche des Geländes ({0}), alle mit dem {1}- bis {2}-Fachen des angegebenen Reibbeiwerts",
     )
-    .with(PhraseValue::Name(names.join(", ")));
+    .with(PhraseValue::Name(names.join(", ")))
+    .with(PhraseValue::fixed(Quantity::Ratio, 1.0 / reach, 2))
+    .with(PhraseValue::fixed(Quantity::Ratio, reach, 2));
     let reason = Phrase::new(
-        "only the friction of the road beside them is drawn: intervals of what moves on them are too narrow",
-        "gezogen wird nur der Reibbeiwert der übrigen Fahrbahn: Intervalle für Bewegungen in diesen \
-         Bereichen sind zu eng",
+        "90 %: nothing says how well they are known; all are better or worse together, in each draw by \
+         another factor, which is that of both vehicles",
+        "90 %: über ihre Unsicherheit ist nichts angegeben; alle sind gemeinsam besser oder schlechter, in \
+         jeder Ziehung um einen anderen Faktor, der für beide Fahrzeuge gilt",
     );
     (!names.is_empty()).then(|| Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
 }

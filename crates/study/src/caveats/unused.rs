@@ -468,8 +468,9 @@ mod tests {
         let caveat = zones_by_network(&struck).unwrap();
         assert_eq!(caveat.kind, CaveatKind::NotUsed);
         assert_eq!(caveat.text, "friction zones: ice");
-        // One that knows them takes their friction as exact: that of the road alone is drawn.
-        let exact = crate::caveats::assumed::zones(&struck.friction_zones).unwrap();
-        assert_eq!(exact.text, "that of the zones of the site (ice) is known exactly");
+        // One that knows them draws their friction.
+        let drawn = crate::caveats::assumed::zones(&struck.friction_zones).unwrap();
+        let text = "zones of the site (ice), all with 0.78 to 1.28 times the friction that it says";
+        assert_eq!(drawn.text, text);
     }
 }

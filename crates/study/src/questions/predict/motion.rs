@@ -304,7 +304,9 @@ impl Question for PredictMotionRequest {
         caveats.extend(noted.unused);
         if forecast.n_vehicles > 0 {
             caveats.extend(assumed::road(&self.motion, &struck.vehicle));
-            caveats.extend(assumed::zones(&struck.friction_zones).filter(|_| follows_both));
+        }
+        if follows_both && settings.n_vehicles > 0 {
+            caveats.extend(assumed::zones(&struck.friction_zones));
         }
         let Outcome::Complete(beside) = self.impulses(struck, library, observer)? else {
             return Ok(Outcome::Cancelled);

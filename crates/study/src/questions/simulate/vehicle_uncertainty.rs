@@ -4,9 +4,10 @@ use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use impactlab_core::numerics::{latin_normals, random_stream};
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
-    RoadDraws, Sensitivity, SheetQuantity, VehicleDraws, VehicleParameters,
+    RoadDraws, Sensitivity, SheetQuantity, VehicleDraws, VehicleParameters, ZONE_FRICTION_LOG_SIGMA,
 };
 
 use crate::EndState;
@@ -47,7 +48,7 @@ struct DrawnEnd {
     has_met: bool,
 }
 
-/// Simulates the motion with vehicles drawn from what the data sheet leaves open, on roads that are drawn;
+/// Simulates the motion with vehicles drawn from what the data sheet leaves open, on ground that is drawn;
 /// `None` if nothing is open, if no draws are asked for, or if nothing is simulated.
 ///
 /// - `n_draws`, `seed`, `road`: number and seed of the draws, and how the friction of the road is drawn.
@@ -65,12 +66,17 @@ pub(crate) fn vehicle_uncertainty(
         return None;
     }
     let vehicles = draws.vehicles(&settings.struck);
-    let end = |struck: VehicleParameters| {
+    let of_zones = latin_normals(vehicles.len(), &mut random_stream(seed, "friction zones", 0));
+    let end = |(struck, of_zones): (VehicleParameters, f64)| {
+        let factor = (ZONE_FRICTION_LOG_SIGMA * of_zones).exp();
+        let friction_zones = settings.friction_zones.iter().map(|zone| zone.scaled(factor));
+        let friction_zones = friction_zones.collect();
         // Both are on one road.
         let friction = settings.striking.tires.friction * struck.tires.friction;
         let striking =
             settings.striking.clone().with_friction(friction / settings.struck.tires.friction);
-        let analysis = analyse(&Settings { struck, striking, ..settings.clone() }).ok()?;
+        let drawn = Settings { struck, striking, friction_zones, ..settings.clone() };
+        let analysis = analyse(&drawn).ok()?;
         let motion = analysis.simulation?;
         Some(DrawnEnd {
             state: EndState::from_series(&motion.series).ok()?,
@@ -78,7 +84,7 @@ pub(crate) fn vehicle_uncertainty(
             has_met: analysis.second_contact.is_some(),
         })
     };
-    let drawn: Vec<Option<DrawnEnd>> = vehicles.into_par_iter().map(end).collect();
+    let drawn: Vec<Option<DrawnEnd>> = vehicles.into_par_iter().zip(of_zones).map(end).collect();
     let ends: Vec<Option<EndState>> =
         drawn.iter().map(|drawn| drawn.as_ref().map(|end| end.state)).collect();
     let motion_ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
