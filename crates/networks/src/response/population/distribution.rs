@@ -119,6 +119,20 @@ impl StrengthPopulation {
         self.known(vehicle).map_or_else(|| self.prior(of_network), |car| car.strengths.clone())
     }
 
+    /// How much is still open of a car, 0 to 1: how far its strengths may move it, over that of a car that
+    /// nobody has measured.
+    ///
+    /// ```text
+    /// s = tr(Σ G)/tr(Σ_between G)
+    /// ```
+    ///
+    /// A motion that excites no effect leaves it at 1.
+    pub(crate) fn open_share(&self, car: &CarStrengths) -> f64 {
+        let moves = |covariance: &DMatrix<f64>| covariance.component_mul(&self.importance).sum();
+        let of_any = moves(&self.between);
+        if of_any > 0.0 { (moves(&car.covariance) / of_any).clamp(0.0, 1.0) } else { 1.0 }
+    }
+
     /// Share of the remainder of a network that holds for cars that it has not learned from.
     pub fn remainder(&self) -> f64 {
         self.remainder
@@ -342,5 +356,32 @@ impl StrengthPopulation {
             }
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A log of a calm drive made a car as well known as one that had spun.
+    #[test]
+    fn a_car_is_known_as_far_as_its_motions_say_what_moves_it() {
+        let mut population = StrengthPopulation::guess();
+        population.importance = DMatrix::identity(N_EFFECTS, N_EFFECTS);
+        let mut car = population.prior(&[0.0; N_EFFECTS]);
+        let open = |car: &CarStrengths| population.open_share(car);
+        assert!((open(&car) - 1.0).abs() < 1e-12);
+        assert!((open(&car.updated(&Evidence::none())) - 1.0).abs() < 1e-9, "a calm drive");
+        let mut evidence = Evidence::none();
+        let mut last = 1.0;
+        for strength in 0..N_EFFECTS {
+            evidence.precision[(strength, strength)] = 1e6;
+            let share = open(&car.updated(&evidence));
+            assert!(share < last, "strength {strength}: {share}, before {last}");
+            last = share;
+        }
+        assert!(last < 0.01, "{last}");
+        car.covariance *= 0.25;
+        assert!((open(&car) - 0.25).abs() < 1e-12);
     }
 }

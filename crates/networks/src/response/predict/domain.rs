@@ -5,6 +5,8 @@
 //! D²  = Σ_q d_q²       applicability = 1/(1 + (D/0.5)⁴)
 //! ```
 //!
+//! Of a car of which motions are known, D of the car, not of its road, counts by how much they leave open of
+//! it, so that a calm drive makes no car known.
 //! Distance and power are chosen, not fitted. Within the ranges the applicability is 1; half of half a range beyond one of them it is a half.
 
 use schemars::JsonSchema;
@@ -17,6 +19,9 @@ use impactlab_core::vehicle::{CollisionForce, VehicleInput, VehicleParameters, V
 
 /// D at which the applicability is a half.
 const HALF_DISTANCE: f64 = 0.5;
+
+/// Applicability from which on a car of which motions are known counts as known, whatever its sheet says.
+const WELL_KNOWN: f64 = 0.995;
 
 /// A quantity by which vehicles and impacts are compared with those that were learned from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -152,16 +157,23 @@ impl MotionDomain {
         Ok(())
     }
 
-    /// How far the model holds for a vehicle.
-    pub(crate) fn vehicle_applicability(&self, vehicle: &VehicleParameters) -> Applicability {
-        applicability(&OF_VEHICLE, &self.vehicle, vehicle_quantities(vehicle))
-    }
-
-    /// How far the model holds on the road of a vehicle that it knows.
-    pub(crate) fn road_applicability(&self, vehicle: &VehicleParameters) -> Applicability {
-        let last = OF_VEHICLE.len() - 1;
-        let range = self.vehicle.get(last..).unwrap_or_default();
-        applicability(&[OF_VEHICLE[last]], range, [vehicle_quantities(vehicle)[last]])
+    /// How far the model holds for a vehicle on its road.
+    ///
+    /// - `open`: how much of the vehicle is not known by its motions: 1 without any, 0 if nothing.
+    pub(crate) fn vehicle_applicability(
+        &self,
+        vehicle: &VehicleParameters,
+        open: f64,
+    ) -> Applicability {
+        const OF_CAR: usize = OF_VEHICLE.len() - 1;
+        let quantities = vehicle_quantities(vehicle);
+        let (cars, road) = self.vehicle.split_at(OF_CAR.min(self.vehicle.len()));
+        let road = applicability(&[OF_VEHICLE[OF_CAR]], road, [quantities[OF_CAR]]);
+        let of_car: [DomainQuantity; OF_CAR] = std::array::from_fn(|i| OF_VEHICLE[i]);
+        let car = applicability(&of_car, cars, std::array::from_fn(|i| quantities[i]));
+        let known = Applicability::new(open * car.distance, car.outside);
+        // What hardly counts any more is not told as lying outside.
+        if open < 1.0 && known.value > WELL_KNOWN { road } else { known.and(&road) }
     }
 
     /// How far the model holds for a motion.
@@ -264,7 +276,7 @@ mod tests {
         let cases = [case(0.5, 15.0), case(0.9, 25.0)];
         let domain = MotionDomain::from_cases(&cases);
         let applicability = |case: &ResponseCase| {
-            domain.vehicle_applicability(&case.vehicle).and(&domain.motion_applicability(
+            domain.vehicle_applicability(&case.vehicle, 1.0).and(&domain.motion_applicability(
                 &case.vehicle,
                 &case.states[0],
                 &case.inputs,
@@ -287,10 +299,29 @@ mod tests {
     fn a_model_of_one_car_does_not_know_others() {
         let domain = MotionDomain::from_cases(&[case(0.5, 15.0), case(0.9, 25.0)]);
         let own = Preset::Reference.parameters().with_friction(0.8);
-        assert_eq!(domain.vehicle_applicability(&own), Applicability::whole());
-        let lighter = domain.vehicle_applicability(&own.clone().with_mass(1200.0, None));
+        assert_eq!(domain.vehicle_applicability(&own, 1.0), Applicability::whole());
+        let lighter = domain.vehicle_applicability(&own.clone().with_mass(1200.0, None), 1.0);
         assert!(lighter.value < 0.01 && lighter.outside[0].quantity == "mass [kg]", "{lighter:?}");
-        let little = domain.vehicle_applicability(&own.with_mass(1960.0, None));
+        let little = domain.vehicle_applicability(&own.with_mass(1960.0, None), 1.0);
         assert!(little.value > 0.4 && little.value < 1.0, "{little:?}");
+    }
+
+    /// A calm log lifted the applicability of a car outside of the fleet from 0.76 to 1.
+    #[test]
+    fn a_car_outside_counts_by_what_its_motions_leave_open_and_its_road_in_full() {
+        let domain = MotionDomain::from_cases(&[case(0.5, 15.0), case(0.9, 25.0)]);
+        let own = Preset::Reference.parameters().with_friction(0.8).with_mass(1900.0, None);
+        let at = |open: f64| domain.vehicle_applicability(&own, open);
+        let unknown = at(1.0);
+        assert!(unknown.value < 0.9 && unknown.outside[0].quantity == "mass [kg]", "{unknown:?}");
+        let calm = at(0.98);
+        assert!(calm.value - unknown.value < 0.03 && calm.outside == unknown.outside, "{calm:?}");
+        for (more, less) in [(1.0, 0.9), (0.9, 0.5), (0.5, 0.2), (0.2, 0.0)] {
+            assert!(at(less).value >= at(more).value, "{less} {more}");
+        }
+        assert_eq!(at(0.0), Applicability::whole());
+        let on_ice = own.with_friction(0.1);
+        let of_ice = domain.vehicle_applicability(&on_ice, 0.0);
+        assert!(of_ice.value < 0.01 && of_ice.outside[0].quantity == "friction", "{of_ice:?}");
     }
 }

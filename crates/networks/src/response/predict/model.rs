@@ -133,11 +133,11 @@ impl ResponseModel {
             }
             None => SourceStrengths::OneCar(self.latents),
         };
-        let of_vehicle = match self.known_car(vehicle) {
-            // The strengths of the car itself are known.
-            Some(_) => domain.road_applicability(vehicle),
-            None => domain.vehicle_applicability(vehicle),
-        };
+        let open = self.population().map(|population| match population.known(vehicle) {
+            Some(car) => population.open_share(&car.strengths),
+            None => 1.0,
+        });
+        let of_vehicle = domain.vehicle_applicability(vehicle, open.unwrap_or(1.0));
         let source = PredictorSource { network, strengths, domain, of_vehicle };
         Ok(Predictor::from_source(vehicle.clone(), source))
     }
