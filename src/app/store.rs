@@ -73,7 +73,7 @@ impl Store {
     fn open(path: PathBuf) -> Result<Self, DataError> {
         if let Some(folder) = path.parent() {
             // If the folder cannot be created, taking the lock fails and reports the error.
-            let _ = std::fs::create_dir_all(folder);
+            let _ = std::fs::create_dir_all(folder).and_then(|()| keep_private(folder));
         }
         let lock = WriterLock::lock_file(&path)?;
         let (written, pending_since, job) = (String::new(), None, None);
@@ -197,6 +197,20 @@ impl Store {
     }
 }
 
+/// Lets nobody but the user look into the folder of the user's data: notes and drafts of cases without a file,
+/// paths, and trained networks are in it.
+#[cfg(unix)]
+fn keep_private(folder: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o700))
+}
+
+/// Other systems give such a folder to its user alone.
+#[cfg(not(unix))]
+fn keep_private(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}
+
 /// Returns the first name `PATH.damaged-N` that is not taken.
 fn free_name(path: &Path) -> PathBuf {
     let mut n = 1;
@@ -212,4 +226,29 @@ fn free_name(path: &Path) -> PathBuf {
 
 fn write(path: &Path, text: &str) -> Result<(), DataError> {
     write_atomically(path, Existing::Replace, |out| out.write_all(text.as_bytes()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Everybody on the machine could read what was typed into a case without a file.
+    #[cfg(unix)]
+    #[test]
+    fn nobody_else_looks_into_the_folder_of_the_state() {
+        use std::fs::{self, Permissions};
+        use std::os::unix::fs::PermissionsExt;
+
+        let home = tempfile::tempdir().unwrap();
+        let data = home.path().join("share/impactlab");
+        // New, and as an earlier version has left it.
+        for before in [None, Some(0o755)] {
+            if let Some(bits) = before {
+                fs::set_permissions(&data, Permissions::from_mode(bits)).unwrap();
+            }
+            assert!(open_state(Some(data.join("state.json"))).store.is_some());
+            let bits = fs::metadata(&data).unwrap().permissions().mode() & 0o777;
+            assert_eq!(bits, 0o700, "{before:?}");
+        }
+    }
 }
