@@ -6,6 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use impactlab_core::data::Existing;
+use impactlab_core::numerics::sha256_hex;
 use impactlab_study::case_file::{CaseFile, Variant};
 use impactlab_study::{EvidenceChoice, ReconstructRequest};
 use tempfile::TempDir;
@@ -154,7 +155,7 @@ fn an_edit_of_a_saved_case_is_said_by_check_and_report() {
     };
     let (code, saved) = check();
     assert_eq!((code, &saved["is_as_saved"]), (Some(0), &json("true")));
-    let digest = |path: &Path| impactlab_core::data::write::sha256_hex(&fs::read(path).unwrap());
+    let digest = |path: &Path| sha256_hex([fs::read(path).unwrap().as_slice()]);
     assert_eq!(saved["sha256"], digest(&path));
     let report = |name: &str| {
         let out = folder.path().join(name);

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use impactlab_core::data::write::{FileDigest, sha256_hex};
+use impactlab_core::data::write::FileDigest;
+use impactlab_core::numerics::sha256_hex;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -157,8 +158,9 @@ fn a_folder_that_holds_a_file_of_the_same_name_is_refused_before_the_work_begins
 
 #[test]
 fn every_report_says_which_program_seed_and_models_gave_it() {
-    let of_file =
-        |name: &str| sha256_hex(&fs::read(format!("assets/models/{name}.safetensors")).unwrap());
+    let of_file = |name: &str| {
+        sha256_hex([fs::read(format!("assets/models/{name}.safetensors")).unwrap().as_slice()])
+    };
     let report = json(&ok(program().args(PREDICT_FORCE).arg("--json").output().unwrap()));
     assert_eq!(report["version"], impactlab::VERSION);
     assert_eq!(report["seed"], 0);
@@ -203,7 +205,7 @@ fn a_training_is_continued_or_replaced_only_where_that_is_said() {
     let report =
         json(&ok(train(&folder, &first).args(["--overwrite", "--json"]).output().unwrap()));
     let bytes = fs::read(&first).unwrap();
-    assert_eq!(report["model_digests"][0]["sha256"], sha256_hex(&bytes));
+    assert_eq!(report["model_digests"][0]["sha256"], sha256_hex([bytes.as_slice()]));
     assert_eq!(report["seed"], 4);
 
     let text = error(&mut train(&folder, &first));

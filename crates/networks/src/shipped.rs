@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::force::{ForceError, ForceModel};
 use crate::learning::{LearningError, ModelFile};
 use crate::response::ResponseModel;
-use impactlab_core::data::write::sha256_hex;
+use impactlab_core::numerics::sha256_hex;
 
 /// The word for the trained model that is part of the program.
 const SHIPPED: &str = "shipped";
@@ -94,7 +94,7 @@ impl ModelSource {
             Self::ShippedPretrained => PRETRAINED_RESPONSE_MODEL,
             Self::File(path) => return M::load_with_digest(path),
         };
-        Ok((M::from_bytes(bytes)?, sha256_hex(bytes)))
+        Ok((M::from_bytes(bytes)?, sha256_hex([bytes])))
     }
 
     /// The word of a model that is part of the program, or the path of a file.

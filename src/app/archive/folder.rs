@@ -211,7 +211,7 @@ fn note_at(path: &Path) -> Result<ArchiveEntry, ArchiveError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::data::write::sha256_hex;
+    use impactlab_core::numerics::sha256_hex;
     use impactlab_study::{EvaluateForceRequest, ModelChoice, Request};
 
     fn draft(content: &[u8], name: &str) -> ArchiveEntry {
@@ -222,7 +222,7 @@ mod tests {
             "data".to_owned(),
             Request::from(question),
         );
-        ArchiveEntry { sha256: sha256_hex(content), ..entry }
+        ArchiveEntry { sha256: sha256_hex([content]), ..entry }
     }
 
     fn put(folder: &ArchiveFolder, content: &[u8], draft: ArchiveEntry) -> ArchiveEntry {

@@ -9,10 +9,10 @@ use crate::app::command::Command;
 use crate::app::found::Found;
 use crate::app::model::file_name;
 use crate::app::tasks::{TaskKey, Tasks};
-use impactlab_core::data::write::sha256_hex;
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
+use impactlab_core::numerics::sha256_hex;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{ModelChoice, Request};
 
@@ -165,7 +165,7 @@ fn keep_bytes(
     draft: ArchiveEntry,
     content: &[u8],
 ) -> Result<ArchiveEntry, ArchiveError> {
-    let draft = ArchiveEntry { sha256: sha256_hex(content), ..draft };
+    let draft = ArchiveEntry { sha256: sha256_hex([content]), ..draft };
     folder.put(draft, |path| {
         Ok(write_atomically(path, Existing::Replace, |out| out.write_all(content))?)
     })

@@ -18,8 +18,7 @@ pub fn random_stream(seed: u64, purpose: &str, number: u64) -> ChaCha8Rng {
     rng
 }
 
-/// SHA-256 of the parts put together, as 64 hexadecimal digits: the fingerprint of the data that
-/// a model was trained on.
+/// SHA-256 of the parts put together, as 64 hexadecimal digits.
 pub fn sha256_hex<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> String {
     let mut hash = Sha256::new();
     parts.into_iter().for_each(|part| hash.update(part));

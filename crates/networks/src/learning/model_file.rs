@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::learning::LearningError;
 use crate::nn::{Checkpoint, ModelKind};
 use impactlab_core::data::Existing;
-use impactlab_core::data::write::sha256_hex;
+use impactlab_core::numerics::sha256_hex;
 
 /// A trained model that files hold.
 pub trait ModelFile: Sized {
@@ -47,7 +47,7 @@ pub trait ModelFile: Sized {
     fn sha256(&self) -> Result<String, Self::Error> {
         let mut file = Checkpoint::new(Self::KIND);
         self.put(&mut file)?;
-        Ok(sha256_hex(&file.to_bytes().map_err(LearningError::from)?))
+        Ok(sha256_hex([file.to_bytes().map_err(LearningError::from)?.as_slice()]))
     }
 
     /// Reads a model.

@@ -13,10 +13,10 @@ use serde_json::{Map, Value};
 
 use crate::nn::checkpoint_bytes::{LENGTH_BYTES, MAX_HEADER_BYTES, decode, encode, kind_in_header};
 use crate::nn::{NamedTensors, NnError};
-use impactlab_core::data::write::sha256_hex;
 use impactlab_core::data::{
     DataError, Existing, MAX_MODEL_BYTES, open_file, read_bytes, write_atomically,
 };
+use impactlab_core::numerics::sha256_hex;
 
 /// What a model file is for, so that none is mistaken for another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,7 +141,7 @@ impl Checkpoint {
         let bytes = read_bytes(path, MAX_MODEL_BYTES)?;
         let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
         let file = Self::from_bytes(&bytes, kind).map_err(in_file)?;
-        Ok((file, sha256_hex(&bytes)))
+        Ok((file, sha256_hex([bytes.as_slice()])))
     }
 
     /// Takes the contents of such a file.

@@ -9,8 +9,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::case_file::{CaseError, Change, UsedFile};
-use impactlab_core::data::write::sha256_hex;
 use impactlab_core::data::{MAX_RESULTS_BYTES, read_utf8};
+use impactlab_core::numerics::sha256_hex;
 
 /// Key of the seal.
 const SEAL: &str = "seal";
@@ -38,7 +38,7 @@ impl CaseOnDisk {
     /// The file of a case with this text.
     pub fn from_text(text: &str, path: &Path) -> Self {
         let is_as_saved = split(text).and_then(|(seal, of_rest)| Some(seal? == of_rest));
-        let (bytes, sha256) = (text.len() as u64, sha256_hex(text.as_bytes()));
+        let (bytes, sha256) = (text.len() as u64, sha256_hex([text.as_bytes()]));
         Self { file: UsedFile { path: path.to_owned(), bytes, sha256 }, is_as_saved }
     }
 
@@ -63,7 +63,7 @@ pub(super) fn sealed(text: &str) -> String {
 fn split(text: &str) -> Option<(Option<String>, String)> {
     let Value::Object(mut all) = serde_json::from_str(text).ok()? else { return None };
     let seal = all.remove(SEAL).map(|seal| seal.as_str().unwrap_or_default().to_owned());
-    Some((seal, sha256_hex(Value::Object(all).to_string().as_bytes())))
+    Some((seal, sha256_hex([Value::Object(all).to_string().as_bytes()])))
 }
 
 #[cfg(test)]
@@ -83,7 +83,7 @@ mod tests {
         let text = std::fs::read_to_string(&path).unwrap();
         let saved = CaseOnDisk::read(&path).unwrap();
         assert_eq!((saved.is_as_saved, saved.change()), (Some(true), None));
-        assert_eq!(saved.file.sha256, sha256_hex(text.as_bytes()));
+        assert_eq!(saved.file.sha256, sha256_hex([text.as_bytes()]));
         assert_eq!(saved.file.bytes, text.len() as u64);
         assert_eq!(CaseFile::load(&path).unwrap(), CaseFile::parse(&text, &path).unwrap());
         // Nothing has changed: the same text again, seal included.

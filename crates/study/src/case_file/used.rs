@@ -12,7 +12,8 @@ use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile, Variant};
 use crate::{EvidenceChoice, InputKind, Request};
 use impactlab_core::data::parts_beside;
-use impactlab_core::data::write::{FileDigest, sha256_hex};
+use impactlab_core::data::write::FileDigest;
+use impactlab_core::numerics::sha256_hex;
 use impactlab_core::site::Site;
 
 /// Why a file is missing that the case has no content of.
@@ -99,7 +100,7 @@ impl UsedFile {
             list.push_str(&format!("{}  {name}\n", file.sha256));
             bytes += file.bytes;
         }
-        Ok(Self { path, bytes, sha256: sha256_hex(list.as_bytes()) })
+        Ok(Self { path, bytes, sha256: sha256_hex([list.as_bytes()]) })
     }
 }
 

@@ -38,15 +38,7 @@ impl FileDigest {
             hasher.update(&buffer[..n]);
             bytes += n as u64;
         }
-        Ok(Self { name: name.into(), bytes, sha256: hex(&hasher.finalize()) })
+        let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { name: name.into(), bytes, sha256 })
     }
-}
-
-/// SHA-256 of bytes, hexadecimal.
-pub fn sha256_hex(bytes: &[u8]) -> String {
-    hex(&Sha256::digest(bytes))
-}
-
-fn hex(digest: &[u8]) -> String {
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }

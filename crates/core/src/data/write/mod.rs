@@ -20,7 +20,7 @@ mod parquet_series;
 mod series;
 mod temporary;
 
-pub use digest::{FileDigest, sha256_hex};
+pub use digest::FileDigest;
 pub use error::WriteError;
 pub use file::{Existing, check_ending, check_target, write_atomically};
 pub use folder::OutputFolder;
