@@ -11,6 +11,7 @@ use crate::app::film::FilmCommand;
 use crate::app::ground::OPEN_SITE;
 use crate::app::keyboard;
 use crate::app::looks::{self, Icon, icon, icon_button};
+use crate::app::model::file_name;
 use crate::app::network::{Network, TrainedModel};
 use crate::app::output::Output;
 use crate::app::panels;
@@ -263,7 +264,7 @@ fn jobs_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (path, replay) in &state.session.replays {
         if let Some(job) = replay.question.job() {
             let cancel = Command::CancelReplay(path.clone());
-            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            let name = file_name(path);
             job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
         }
     }
@@ -302,7 +303,7 @@ fn jobs_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     if let Some(path) = tasks.film()
         && let Some((progress, left)) = tasks.progress(&TaskKey::Film(path.to_owned()))
     {
-        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let name = file_name(path);
         let what = format!("Making {name}");
         progress_ui(ui, &what, progress, left, Command::Film(FilmCommand::Cancel), commands);
     }

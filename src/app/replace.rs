@@ -8,6 +8,7 @@ use crate::app::atlas::SHIPPED_PLAN;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::export;
+use crate::app::model::file_name;
 use crate::app::output::Output;
 use crate::app::state::State;
 use crate::app::tasks::TaskKey;
@@ -131,7 +132,7 @@ impl State {
 ///
 /// - `output`, `path`: what would be written, and where.
 pub fn replace_ui(ui: &mut Ui, (output, path): (&Output, &Path), commands: &mut Vec<Command>) {
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let name = file_name(path);
     ui.heading(format!("Replace {name}?"));
     ui.label(path.display().to_string());
     ui.weak(match path.is_dir() {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::case::CaseCommand;
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
+use crate::app::model::file_name;
 use crate::app::state::State;
 use impactlab_study::case_file::Reach;
 
@@ -64,7 +65,7 @@ impl State {
 /// Draws the question whether a case may be opened, and adds a command with the answer.
 pub fn trust_ui(ui: &mut Ui, trusted: &TrustedCase, commands: &mut Vec<Command>) {
     let TrustedCase { path, reach } = trusted;
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let name = file_name(path);
     ui.heading(format!("Open {name}?"));
     ui.label("This case does more than read the files in its folder:");
     let phrases = reach.phrases();

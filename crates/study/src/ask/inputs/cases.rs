@@ -38,7 +38,7 @@ pub enum EvaluatedCases {
     All,
 }
 
-/// What a data set is called.
+/// What a data set or a file of one is called.
 pub(crate) fn data_name(root: &Path) -> String {
     root.file_name().unwrap_or(root.as_os_str()).to_string_lossy().into_owned()
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::AnalysisError;
 use crate::ask::checks::{check, check_count, check_given};
-use crate::ask::inputs::{OpenVehicle, struck_vehicle};
+use crate::ask::inputs::{OpenVehicle, data_name, struck_vehicle};
 use crate::caveats::assumed;
 use crate::questions::replay::record::Record;
 use crate::questions::replay::report::{
@@ -167,8 +167,7 @@ impl ReplayRequest {
     }
 
     fn name(&self) -> String {
-        let name = self.recorder.file_name().unwrap_or(self.recorder.as_os_str());
-        name.to_string_lossy().into_owned()
+        data_name(&self.recorder)
     }
 
     fn not_simulated(&self, source: SimulationError) -> StudyError {
