@@ -178,7 +178,7 @@ pub fn read_drawing(file: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, 
 /// Number of objects in the text or the bytes of a drawing, before any of them is read: each begins with the
 /// group code 0. It may be a few too many.
 fn count_objects(bytes: &[u8]) -> usize {
-    if first_line_has(bytes, BINARY) {
+    if is_binary(bytes) {
         let is_object = |at: &[u8]| at[..2] == [0, 0] && at[2].is_ascii_uppercase();
         return bytes.windows(3).filter(|at| is_object(at)).count();
     }
@@ -187,6 +187,11 @@ fn count_objects(bytes: &[u8]) -> usize {
         digits.peek().is_some() && digits.all(|digit| *digit == b'0')
     };
     bytes.split(|byte| *byte == b'\n').step_by(2).filter(is_code_0).count()
+}
+
+/// Whether a drawing is in binary form.
+pub(super) fn is_binary(bytes: &[u8]) -> bool {
+    first_line_has(bytes, BINARY)
 }
 
 fn first_line_has(bytes: &[u8], words: &[u8]) -> bool {

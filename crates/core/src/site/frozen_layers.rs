@@ -3,16 +3,15 @@
 //! The reader of drawings drops the flags of a layer (group code 70), whose lowest bit says that it is
 //! frozen: then nothing on it is shown, while it may be switched on. So the table of layers is read here.
 
+use crate::site::drawing::is_binary;
+
 /// Flag of a frozen layer in group code 70.
 const FROZEN: i64 = 1;
-
-/// Beginning of a drawing in binary form.
-const BINARY: &[u8] = b"AutoCAD Binary DXF";
 
 /// Whether each layer is frozen, in the order of the drawing's table; `None` for a binary drawing, which is
 /// not searched.
 pub(super) fn frozen_layers(bytes: &[u8]) -> Option<Vec<bool>> {
-    if bytes.starts_with(BINARY) {
+    if is_binary(bytes) {
         return None;
     }
     let mut lines = bytes.split(|byte| *byte == b'\n').map(<[u8]>::trim_ascii);
