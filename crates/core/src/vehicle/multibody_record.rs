@@ -9,13 +9,12 @@ use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::parameters::{
     GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters,
 };
+use crate::vehicle::sheet::AIR_DENSITY_KG_M3;
 use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
 use crate::vehicle::{CrushParameters, DrivenAxle, Equations, RoadSlope};
 
 /// Vertical load at which the record states the cornering stiffnesses of the tires, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
-/// Air density at 15 °C and sea level, kg/m³ (ISO 2533 standard atmosphere).
-const AIR_DENSITY_KG_M3: f64 = 1.225;
 /// Height of the roll axis above the ground at the CG, m: a usual value for strut and
 /// double-wishbone axles.
 const ROLL_AXIS_HEIGHT_M: f64 = 0.10;

@@ -25,7 +25,7 @@ use crate::vehicle::{
 use super::data_sheet::SheetValues;
 
 /// Air density at 15 °C and sea level, kg/m³ (ISO 2533 standard atmosphere).
-pub(super) const AIR_DENSITY_KG_M3: f64 = 1.225;
+pub(in crate::vehicle) const AIR_DENSITY_KG_M3: f64 = 1.225;
 
 /// Largest |I_xz| over the root of both moments in a derived vehicle.
 const MAX_COUPLING: f64 = 0.5;
