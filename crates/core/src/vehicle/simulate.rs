@@ -33,8 +33,10 @@ pub const OUTPUT_INTERVAL_S: f64 = 0.01;
 pub enum Integrator {
     /// Classical Runge–Kutta method of order 4 with a step of 1 ms.
     #[default]
+    #[serde(alias = "rk4")]
     Rk4,
     /// Explicit Euler method with a step of 10 ms, the baseline of the paper (`eq:baseline:4dof`).
+    #[serde(alias = "euler")]
     Euler,
 }
 

@@ -26,12 +26,16 @@ pub enum VehicleChoice {
     /// The data set's own, else [`DEFAULT_VEHICLE`] or [`DEFAULT_STRIKING`], which is then listed as
     /// an assumption.
     #[default]
+    #[serde(alias = "automatic")]
     Automatic,
     /// A vehicle that comes with the program, a preset or one of the library, by its id.
+    #[serde(alias = "preset")]
     Preset(String),
     /// A vehicle file.
+    #[serde(alias = "file")]
     File(PathBuf),
     /// A data sheet that was filled in.
+    #[serde(alias = "sheet")]
     Sheet(Box<DataSheet>),
 }
 
@@ -144,4 +148,25 @@ pub(crate) fn striking_vehicle(
     );
     caveats.push(Caveat::assumed(CaveatSubject::Striking, name_of(DEFAULT_STRIKING.id()), reason));
     Ok(DEFAULT_STRIKING.parameters())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::Integrator;
+
+    /// Options, reports and all other choices spell their words so; questions knew `Rk4` and `File` alone.
+    #[test]
+    fn vehicles_and_integrators_are_read_in_small_letters_too() {
+        assert_eq!(serde_json::from_str::<Integrator>("\"rk4\"").unwrap(), Integrator::Rk4);
+        assert_eq!(serde_json::from_str::<Integrator>("\"euler\"").unwrap(), Integrator::Euler);
+        for (written, expected) in [
+            ("\"automatic\"", VehicleChoice::Automatic),
+            ("{\"preset\": \"target-2000\"}", VehicleChoice::Preset("target-2000".to_owned())),
+            ("{\"file\": \"car.toml\"}", VehicleChoice::File(PathBuf::from("car.toml"))),
+        ] {
+            let read: VehicleChoice = serde_json::from_str(written).unwrap();
+            assert_eq!(read, expected, "{written}");
+        }
+    }
 }
