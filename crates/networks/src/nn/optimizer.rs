@@ -85,8 +85,6 @@ pub struct StepReport {
     pub gradient_norm: f64,
     /// η_t.
     pub learning_rate: f64,
-    /// Number of trained parameters on which the loss does not depend. They are not changed.
-    pub n_without_gradient: usize,
 }
 
 /// Largest number of steps of a state that is taken over.
@@ -155,7 +153,8 @@ impl AdamW {
         self.step
     }
 
-    /// Moves the trained parameters by one step against the gradients.
+    /// Moves the trained parameters by one step against the gradients; those on which the loss does not
+    /// depend stay.
     ///
     /// - `parameters`: those that the optimiser was made for.
     /// - `gradients`: of the loss, from `loss.backward()`.
@@ -170,11 +169,10 @@ impl AdamW {
     ) -> Result<StepReport, NnError> {
         let entries = parameters.entries();
         self.check_same(entries)?;
-        let (mut sum_of_squares, mut n_without_gradient) = (0.0, 0);
+        let mut sum_of_squares = 0.0;
         let mut found = Vec::with_capacity(entries.len());
         for entry in entries {
             let gradient = gradients.get(&entry.variable).filter(|_| entry.trained);
-            n_without_gradient += usize::from(entry.trained && gradient.is_none());
             let gradient = gradient.map(|gradient| gradient.detach().contiguous()).transpose()?;
             if let Some(gradient) = &gradient {
                 let squares =
@@ -202,7 +200,7 @@ impl AdamW {
                 )?;
             }
         }
-        Ok(StepReport { step: self.step, gradient_norm, learning_rate, n_without_gradient })
+        Ok(StepReport { step: self.step, gradient_norm, learning_rate })
     }
 
     fn rates(&self, learning_rate: f64, gradient_norm: f64) -> Rates {

@@ -74,7 +74,6 @@ fn braked_pair(name: &str, stands_s: f64, is_anti_lock: bool) -> PairCase {
         contact: RecordedContact {
             first_s: Some(1.0),
             place_m: Some([-1.5, -0.9]),
-            phases_s: Vec::new(),
             force_world_n: [Vec::new(), Vec::new()],
         },
     }

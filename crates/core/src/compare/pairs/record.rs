@@ -73,8 +73,6 @@ pub struct RecordedContact {
     pub first_s: Option<f64>,
     /// Where the struck car is touched first, body axes from its CG, m; `None` if it is not said.
     pub place_m: Option<[f64; 2]>,
-    /// Start and end of each phase of contact, s; empty if they are not said.
-    pub phases_s: Vec<[f64; 2]>,
     /// Contact force on the struck car over time, world axes, N: means over the interval that
     /// follows.
     pub force_world_n: [Vec<f64>; 2],
@@ -200,7 +198,6 @@ impl PairRecords {
         let contact = RecordedContact {
             first_s,
             place_m: row.optional(&PLACE_X)?.zip(row.optional(&PLACE_Y)?).map(<[f64; 2]>::from),
-            phases_s: phases_s(row),
             force_world_n: [
                 columns.numbers("contact_fx_n")?.unwrap_or_default(),
                 columns.numbers("contact_fy_n")?.unwrap_or_default(),
@@ -328,23 +325,6 @@ fn brake_pedal(
     let share = deceleration_g / friction;
     let braking = Braking::new(first_s + reaction_s, share, DEFAULT_BRAKE_RISE_S);
     Ok(Some(Braking { front_share: Some(FRONT_BRAKE_SHARE), abs, ..braking }))
-}
-
-/// Start and end of each phase of contact: numbers with `;` between them. What does not go together is
-/// left out.
-fn phases_s(row: &Attributes) -> Vec<[f64; 2]> {
-    let numbers = |name: &str| -> Vec<f64> {
-        match (row.number(name), row.text(name)) {
-            (Some(number), _) => vec![number],
-            (None, Some(text)) => text.split(';').filter_map(|it| it.trim().parse().ok()).collect(),
-            (None, None) => Vec::new(),
-        }
-    };
-    let (starts, ends) = (numbers("contact_start_s"), numbers("contact_end_s"));
-    if starts.len() != ends.len() {
-        return Vec::new();
-    }
-    starts.into_iter().zip(ends).map(|(start_s, end_s)| [start_s, end_s]).collect()
 }
 
 /// The columns of the file of a case by their names.

@@ -11,38 +11,15 @@ pub struct PaperMetrics {
     pub trajectories: Option<usize>,
     /// Average error, m.
     pub average_error_m: f64,
-    /// Time per step, ms.
-    pub time_per_step_ms: f64,
 }
 
-/// Average errors and times per step of [`PitPinnPaper`](impactlab_core::bibliography::PitPinnPaper). They were
-/// measured on other data, on another machine, against a 4DOF model with errors: to be shown beside
-/// metrics of this program, never as such.
+/// Average errors of [`PitPinnPaper`](impactlab_core::bibliography::PitPinnPaper). They were measured on other
+/// data, against a 4DOF model with errors: to be shown beside metrics of this program, never as such.
 const PAPER_METRICS: [PaperMetrics; 4] = [
-    PaperMetrics {
-        kind: MotionModelKind::Untuned,
-        trajectories: None,
-        average_error_m: 35.20,
-        time_per_step_ms: 3.21,
-    },
-    PaperMetrics {
-        kind: MotionModelKind::Network,
-        trajectories: Some(5),
-        average_error_m: 14.13,
-        time_per_step_ms: 10.75,
-    },
-    PaperMetrics {
-        kind: MotionModelKind::Network,
-        trajectories: Some(20),
-        average_error_m: 10.47,
-        time_per_step_ms: 10.78,
-    },
-    PaperMetrics {
-        kind: MotionModelKind::Plain,
-        trajectories: None,
-        average_error_m: 8.25,
-        time_per_step_ms: 7.45,
-    },
+    PaperMetrics { kind: MotionModelKind::Untuned, trajectories: None, average_error_m: 35.20 },
+    PaperMetrics { kind: MotionModelKind::Network, trajectories: Some(5), average_error_m: 14.13 },
+    PaperMetrics { kind: MotionModelKind::Network, trajectories: Some(20), average_error_m: 10.47 },
+    PaperMetrics { kind: MotionModelKind::Plain, trajectories: None, average_error_m: 8.25 },
 ];
 
 /// The metrics that the paper prints for a model, if it has such a model.
