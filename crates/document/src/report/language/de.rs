@@ -77,8 +77,8 @@ pub(super) const WORDS: Words = Words {
     ask_motion: "Frage: Wohin bewegt sich das gestoßene Fahrzeug ({vehicle}) nach dem Aufprall „{name}“ \
         nach dem Bewegungsnetz, und wie sicher ist das?",
     of_other_mass: "{vehicle}, hier mit {mass}",
-    ask_reconstruct: "Frage: Wie schnell waren beide Fahrzeuge bei dem Zusammenstoß „{name}“ vor dem Aufprall, \
-        nach den vorgefundenen Spuren?",
+    ask_reconstruct: "Frage: Wie schnell waren beide Fahrzeuge vor dem Zusammenstoß „{name}“, nach den \
+        vorgefundenen Spuren?",
     ask_single_car: "Frage: Wie schnell war das Fahrzeug im Fall „{name}“ am Anfang der Bewegung, nach den \
         vorgefundenen Spuren?",
     ask_other: "Frage: {kind}.",
@@ -178,12 +178,12 @@ pub(super) const WORDS: Words = Words {
     marginal_picture: "{quantity}: wie wahrscheinlich sie ohne die Spuren ist und mit ihnen",
     fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
         {level} gilt eine Spur als nicht erklärt.",
-    left_out_text: "Die Geschwindigkeit ohne je einen Teil der Spuren. Die Wahrscheinlichkeit, so weit abzuliegen, ist \
-        die, mit der die übrigen Teile ihn nach der einen oder der anderen Seite so weit entfernt erwarten, wie er \
-        vorgefunden wurde, oder weiter; angegeben ist eine obere Schranke: die kleinste seiner Merkmale mal deren \
-        Anzahl. „≤ 1“ beschränkt nichts: kein Merkmal des Teils überrascht, was nicht beweist, dass der Teil richtig \
-        ist. Ein Teil, der das Ergebnis mit sich zieht, wird von einem Ergebnis erklärt, das ihm folgt; hier wird er \
-        selbst nicht gefragt.",
+    left_out_text: "Die Geschwindigkeit, wenn jeweils ein Teil der Spuren weggelassen wird. Die Wahrscheinlichkeit, so \
+        weit abzuliegen, ist die, mit der die übrigen Teile ihn so weit entfernt erwarten, wie er vorgefunden wurde, \
+        oder weiter, gleich nach welcher Seite; angegeben ist eine obere Schranke: die kleinste seiner Merkmale mal \
+        deren Anzahl. „≤ 1“ besagt nichts: kein Merkmal des Teils ist auffällig, was nicht beweist, dass der Teil \
+        richtig ist. Ein Teil, der das Ergebnis zu sich hinzieht, erscheint durch eben dieses Ergebnis erklärt; hier ist \
+        er deshalb selbst ausgenommen.",
     several_courses: "Mehr als ein Geschehensablauf ist möglich. Jeder hat eigene Werte in Abschnitt 4; die unten \
         stehenden über alle können für keinen davon zutreffen.",
     hinges_text: "Eine Ausgleichsgerade durch die Partikel sagt, um wie viel sich eine Geschwindigkeit im Mittel \

@@ -174,9 +174,9 @@ pub(super) const WORDS: Words = Words {
         below {level} counts as unexplained.",
     left_out_text: "The speed without each part of the evidence in turn. The chance to lie so far off is the \
         probability with which the other parts expect it as far off as it was found, to either side, or farther; what \
-        stands there is an upper bound: the smallest one of its items times their number. “≤ 1” bounds nothing: no \
+        stands there is an upper bound: the smallest one of its items times their number. “≤ 1” says nothing: no \
         item of the part is a surprise, which does not prove that the part is right. A part that pulls the answer \
-        along is explained by an answer that follows it; here it is not asked itself.",
+        towards itself seems to be explained by that very answer; here it is therefore left out of it.",
     several_courses: "More than one course of events is possible. Each has figures of its own in section 4; those \
         over all of them, below, may be true of none.",
     hinges_text: "A line through the particles by least squares says by how much a speed moves on the average \

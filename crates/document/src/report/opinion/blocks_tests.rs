@@ -117,7 +117,10 @@ fn what_was_counted_is_not_said_of_a_doubtful_answer() {
     let table = || Some(Block::paragraph("19 of 20"));
     let (rank, methods) = (Rank::Reconstruction, [Method::Reconstruction]);
     let told = told_of_variants([("a", true, None)], rank, &methods);
-    assert!(told.contains("says nothing of an answer") && !told.contains("not counted"), "{told}");
+    assert!(
+        told.contains("says nothing about an answer") && !told.contains("not counted"),
+        "{told}"
+    );
     let told = told_of_variants([("a", false, table()), ("b", true, None)], rank, &methods);
     assert!(told.contains("19 of 20") && told.contains("“b”: How often"), "{told}");
     let told = told_of_variants([("a", false, None), ("b", true, None)], rank, &methods);

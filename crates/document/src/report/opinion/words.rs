@@ -99,8 +99,8 @@ const EN: OpinionWords = OpinionWords {
     in_no_draw: "in no draw",
     how_sure: "How sure the answer is",
     not_counted: "For answers of this kind it was not counted how often their intervals held.",
-    counted_of_others: "How often intervals held when they were tried says nothing of an answer with the warnings of this \
-        one.",
+    counted_of_others: "How often intervals held when they were tried says nothing about an answer that carries such \
+        warnings.",
     counted_inside: "The case lies outside the domain (section 6); for such cases it was not counted by itself.",
     known_error: "The intervals were tried on computed collisions whose outcome was known; the known errors are in \
         section 7. The method was not validated against real collisions. The bounds are those of 95 % \
@@ -185,8 +185,8 @@ const DE: OpinionWords = OpinionWords {
     in_no_draw: "in keiner Ziehung",
     how_sure: "Wie sicher die Antwort ist",
     not_counted: "Für Antworten dieser Art wurde nicht gezählt, wie oft ihre Bereiche zutrafen.",
-    counted_of_others: "Wie oft Bereiche zutrafen, als sie geprüft wurden, sagt nichts über eine Antwort mit den Warnungen \
-        dieser.",
+    counted_of_others: "Wie oft Bereiche bei der Erprobung zutrafen, sagt nichts über eine Antwort aus, die solche \
+        Warnungen trägt.",
     counted_inside: "Der Fall liegt außerhalb des Gültigkeitsbereichs (Abschnitt 6); für solche Fälle wurde nicht eigens \
         gezählt.",
     known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
