@@ -124,6 +124,7 @@ mod tests {
     const VALIDATION: &str = include_str!("../../../../docs/VALIDATION.md");
     const LIMITS: &str = include_str!("../../../../docs/guide/limits.md");
     const README: &str = include_str!("../../../../README.md");
+    const DATASETS: &str = include_str!("../../../../datasets/README.md");
 
     fn words() -> [&'static Words; 2] {
         [Language::En, Language::De].map(words_of)
@@ -173,6 +174,7 @@ mod tests {
             (LIMITS, motions.clone()),
             (README, impacts),
             (README, motions),
+            (DATASETS, format!("response network has learned from {n_cars} cars")),
             (VALIDATION, format!("Shipped model: {n_impacts} training cases")),
         ]);
     }
