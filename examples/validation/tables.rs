@@ -123,19 +123,34 @@ fn four_dof(datasets: &Path) -> Result<Found, Box<dyn Error>> {
     })
 }
 
+/// Scores of both vehicles of recorded pairs.
+const OF_CARS: [fn(&EvaluatedPair) -> &VehicleScore; 2] =
+    [|case| &case.struck, |case| &case.striking];
+
+/// How often the regions of one vehicle held its place at the end.
+fn ends_held<'a>(
+    cases: impl Iterator<Item = &'a EvaluatedPair> + Clone,
+    score: fn(&EvaluatedPair) -> &VehicleScore,
+    (quantity, of): (String, Option<TriedMotion>),
+) -> HeldIntervals {
+    let count =
+        |holds: fn(&VehicleScore) -> bool| cases.clone().filter(|case| holds(score(case))).count();
+    let n = cases.clone().count();
+    HeldIntervals { quantity, in_50: count(|of| of.end_50), in_90: count(|of| of.end_90), n, of }
+}
+
 /// Errors of both vehicles of recorded pairs, and how often their regions held, of the half that the
-/// contact law was fitted to and of the other one.
+/// contact law was fitted to and of the other one; and of impacts of both halves that are no push on a flank.
 fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
-    let (mut rows, mut held) = (Vec::new(), Vec::new());
+    let (mut rows, mut held, mut others) = (Vec::new(), Vec::new(), Vec::new());
     for (split, name) in [(PairSplit::Reported, "not fitted to"), (PairSplit::Fitted, "fitted to")]
     {
         let question = EvaluatePairsRequest { split, ..EvaluatePairsRequest::new(path) };
         let report = answer(&question)?.report.report;
-        let of_car: [fn(&EvaluatedPair) -> &VehicleScore; 2] =
-            [|case| &case.struck, |case| &case.striking];
         let struck = report.overall.as_ref().map(|overall| &overall.vehicle);
         let summaries = [struck, report.striking.as_ref()];
-        for ((summary, car), score) in summaries.into_iter().zip(["struck", "striking"]).zip(of_car)
+        for ((summary, car), score) in
+            summaries.into_iter().zip(["struck", "striking"]).zip(OF_CARS)
         {
             let summary = summary.ok_or("no cases")?;
             let share = |share: f64| format!("{:.0} %", 100.0 * share);
@@ -158,18 +173,17 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
                 2,
             ));
             if split == PairSplit::Reported {
-                let count = |holds: fn(&VehicleScore) -> bool| {
-                    report.cases.iter().filter(|case| holds(score(case))).count()
-                };
-                held.push(HeldIntervals {
-                    quantity: format!("place of the {car} vehicle at the end"),
-                    in_50: count(|score| score.end_50),
-                    in_90: count(|score| score.end_90),
-                    n: report.cases.len(),
-                    of: None,
-                });
+                let quantity = format!("place of the {car} vehicle at the end");
+                held.push(ends_held(report.cases.iter(), score, (quantity, None)));
             }
         }
+        let is_other = |case: &&EvaluatedPair| matches!(&*case.kind, "rear-end" | "t-bone");
+        others.extend(report.cases.iter().filter(is_other).cloned());
+    }
+    for (does, score) in ["is hit", "hits"].into_iter().zip(OF_CARS) {
+        let quantity = format!("place at the end of the vehicle that {does} from behind or across");
+        let of = Some(TriedMotion::OtherImpact);
+        held.push(ends_held(others.iter(), score, (quantity, of)));
     }
     Ok(Found { subject: Measured::Pairs, tables: vec![rows], held, held_in_all: Vec::new() })
 }

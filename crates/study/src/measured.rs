@@ -9,6 +9,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use impactlab_reconstruct::evaluate::KnownEvidence;
@@ -103,14 +104,18 @@ pub struct HeldIntervals {
     pub of: Option<TriedMotion>,
 }
 
-/// A kind of motion of which it was counted by itself how often intervals held.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+/// A kind of motion among those that were tried; of some it was counted by itself how often intervals held.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TriedMotion {
-    /// Nothing acts on the wheels, which may be steered.
+    /// One vehicle by itself; nothing acts on its wheels, which may be steered.
     Coasting,
-    /// Wheels are braked, dragged or locked.
+    /// One vehicle by itself, wheels of which are braked, dragged or locked.
     Braked,
+    /// Both vehicles, of which one hits a flank of the other and travels much the same way, as in a PIT.
+    PushOnFlank,
+    /// Both vehicles after any other impact, such as a T-bone or rear-end collision.
+    OtherImpact,
 }
 
 impl HeldIntervals {

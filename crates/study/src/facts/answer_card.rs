@@ -123,7 +123,7 @@ impl PredictMotionReport {
             None => Measured::ResponseNetwork,
         };
         let measured = measurement_of(subject, &self.response_model);
-        let held = measured.filter(|_| self.is_measured())?.held_of(Some(self.tried_motion()));
+        let held = measured.filter(|_| self.is_measured())?.held_of(Some(self.tried_motion));
         held.into_iter().min_by(|a, b| a.share_in_90().total_cmp(&b.share_in_90()))
     }
 

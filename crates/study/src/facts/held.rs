@@ -130,6 +130,9 @@ mod tests {
         }
         // Where a kind was not counted by itself, all are told.
         let pairs = Measurement::shipped(Measured::Pairs).unwrap();
-        assert_eq!(pairs.held_of(Some(TriedMotion::Braked)), pairs.held_of(None));
+        assert_eq!(pairs.held_of(Some(TriedMotion::PushOnFlank)), pairs.held_of(None));
+        let others = pairs.held_of(Some(TriedMotion::OtherImpact));
+        let held_less = |of: &&HeldIntervals| of.n == 7 && of.share_in_90() < NINETY;
+        assert!(others.len() == 2 && others.iter().all(held_less), "{others:?}");
     }
 }

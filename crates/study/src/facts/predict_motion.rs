@@ -13,7 +13,7 @@ use crate::facts::held::held_intervals;
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::measured::{Measured, TriedMotion};
+use crate::measured::Measured;
 use crate::{FlagReport, PredictMotionReport, StrikingReport};
 
 impl PredictMotionReport {
@@ -34,19 +34,12 @@ impl PredictMotionReport {
 
     /// How often such intervals held; none where that was not measured on such forecasts.
     pub fn held_table(&self) -> Option<FactTable> {
+        let kind = Some(self.tried_motion);
         match self.contacts {
-            Some(_) => held_intervals(Measured::Pairs, &self.response_model, None),
-            None => {
-                let kind = Some(self.tried_motion());
-                held_intervals(Measured::ResponseNetwork, &self.response_model, kind)
-                    .filter(|_| self.is_measured())
-            }
+            Some(_) => held_intervals(Measured::Pairs, &self.response_model, kind),
+            None => held_intervals(Measured::ResponseNetwork, &self.response_model, kind)
+                .filter(|_| self.is_measured()),
         }
-    }
-
-    /// The kind of motion that the struck vehicle has among those that were tried.
-    pub(super) fn tried_motion(&self) -> TriedMotion {
-        if self.is_braked { TriedMotion::Braked } else { TriedMotion::Coasting }
     }
 
     /// Whether it is a forecast of the kind of which it was counted how often intervals held.

@@ -599,6 +599,14 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("not fitted to", "nicht angepasst an"),
     ("fitted to", "angepasst an"),
     ("place at the end", "Ort am Ende"),
+    (
+        "place at the end of the vehicle that hits from behind or across",
+        "Ort des von hinten oder quer stoßenden Fahrzeugs am Ende",
+    ),
+    (
+        "place at the end of the vehicle that is hit from behind or across",
+        "Ort des von hinten oder quer getroffenen Fahrzeugs am Ende",
+    ),
     ("place of a braked car at the end", "Ort eines gebremsten Fahrzeugs am Ende"),
     ("place of a coasting car at the end", "Ort eines rollenden Fahrzeugs am Ende"),
     ("place of the striking vehicle at the end", "Ort des stoßenden Fahrzeugs am Ende"),

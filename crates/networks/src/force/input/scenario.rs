@@ -3,7 +3,7 @@
 //! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
 //! vehicles does not change the force, since tire forces during the contact are neglected.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -213,6 +213,13 @@ impl ForceScenario {
         let impact = self.impact(ContactLaw::at_closing_speed(0.0))?;
         let law = ContactLaw::at_closing_speed(impact.closing_speed_m_s());
         self.impact(self.contact_law.unwrap_or(law))
+    }
+
+    /// Whether a flank is hit by a vehicle that travels much the same way, as in a PIT manoeuvre: the contact
+    /// normal points across the struck vehicle, and the headings differ by up to 45°.
+    pub fn is_push_on_flank(&self) -> bool {
+        let is_across = |normal_rad: f64| normal_rad.sin().abs() > FRAC_PI_4.sin();
+        self.normal_rad.is_none_or(is_across) && self.theta_b_rad.abs() <= FRAC_PI_4
     }
 
     /// Angle of the contact normal of a canonical scenario from across the struck vehicle, rad; zero where

@@ -9,7 +9,7 @@ use crate::questions::predict::motion::Noted;
 use crate::questions::predict::one_vehicle::given_force;
 use crate::{
     Event, ForceSource, InputKind, Library, MotionSource, Observer, PredictMotionRequest,
-    SeriesFile, StudyError,
+    SeriesFile, StudyError, TriedMotion,
 };
 use impactlab_core::data::{ForceHistory, Outcome};
 use impactlab_core::jobs::Progress;
@@ -17,7 +17,7 @@ use impactlab_core::numerics::random_stream;
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture};
 use impactlab_core::units::{Phrase, PhraseValue};
-use impactlab_networks::force::{ForcePrediction, SHARE_OF_NETWORK};
+use impactlab_networks::force::{ForcePrediction, ForceScenario, SHARE_OF_NETWORK};
 use impactlab_networks::response::ResponseModel;
 
 /// Share of the draws with a scale that is cut off from which on it is said.
@@ -106,6 +106,26 @@ impl<'a> Both<'a> {
 }
 
 impl PredictMotionRequest {
+    /// Like which of the motions that were tried the forecast is.
+    pub(super) fn tried_motion(
+        &self,
+        struck: &StruckVehicle,
+        follows_both: bool,
+    ) -> Result<TriedMotion, StudyError> {
+        match &self.motion.source {
+            MotionSource::Scenario { scenario: choice, .. } if follows_both => {
+                let collision = ForceScenario::from_scenario(&choice.load()?);
+                let collision = collision.map_err(|source| choice.unsolved(source))?;
+                Ok(match collision.is_push_on_flank() {
+                    true => TriedMotion::PushOnFlank,
+                    false => TriedMotion::OtherImpact,
+                })
+            }
+            _ if struck.controls.acts_on_wheels() => Ok(TriedMotion::Braked),
+            _ => Ok(TriedMotion::Coasting),
+        }
+    }
+
     /// How likely the vehicles come to the lanes and kerbs of the site.
     pub(super) fn places(
         &self,
@@ -249,5 +269,28 @@ fn law_text(share: f64) -> Phrase {
             "Der erste Kontakt folgt aus dem Kontaktgesetz, da das Kraftnetz an solchen Kollisionen nicht \
              gelernt hat",
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::collision::{ContactLocation, Scenario, Side};
+
+    /// A T-bone and a rear-end collision were told how often regions had held of PITs.
+    #[test]
+    fn a_t_bone_and_a_rear_end_collision_are_no_push_on_a_flank() {
+        let is_push = |side, heading_deg: f64, speed_m_s: f64| {
+            let mut scenario = Scenario::example();
+            let heading_rad = heading_deg.to_radians();
+            scenario.striking.heading_rad = heading_rad;
+            scenario.striking.vx_world_m_s = speed_m_s * heading_rad.cos();
+            scenario.striking.vy_world_m_s = speed_m_s * heading_rad.sin();
+            scenario.contact.location = ContactLocation::Side { side, offset_m: 0.0 };
+            ForceScenario::from_scenario(&scenario).unwrap().is_push_on_flank()
+        };
+        assert!(is_push(Side::Right, 18.0, 17.0));
+        assert!(!is_push(Side::Right, 90.0, 12.0));
+        assert!(!is_push(Side::Rear, 0.0, 22.0));
     }
 }

@@ -21,7 +21,7 @@ use crate::questions::simulate::dataset::take_case;
 use crate::{
     Answer, DEFAULT_DURATION_S, FlagReport, ForceSource, ImpliedContactReport, ImpulseRival,
     Library, ModelChoice, MotionSource, Observer, Provenance, Question, SimulateAnswer,
-    SimulateRequest, StudyError,
+    SimulateRequest, StudyError, TriedMotion,
 };
 use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{ColumnMap, DatasetKind, Outcome};
@@ -75,8 +75,8 @@ pub struct PredictMotionReport {
     pub scenario: String,
     /// The struck vehicle.
     pub vehicle: String,
-    /// Whether wheels of the struck vehicle are driven, braked, dragged or locked.
-    pub is_braked: bool,
+    /// Like which of the motions that were tried it is, by which it is told how often intervals held.
+    pub tried_motion: TriedMotion,
     /// The force file, where the force is one.
     pub force: Option<PathBuf>,
     /// The force network, where the force is predicted.
@@ -327,6 +327,7 @@ impl Question for PredictMotionRequest {
             recorded: self.recorded(&analysis, struck, &forecast),
             rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
             places: self.places(&forecast, &analysis, &mut caveats)?,
+            tried_motion: self.tried_motion(struck, follows_both)?,
             ..self.report(&analysis, struck, &forecast)
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, &predicted));
@@ -446,7 +447,7 @@ impl PredictMotionRequest {
         PredictMotionReport {
             scenario: analysis.name.clone(),
             vehicle: struck.vehicle.name.clone(),
-            is_braked: struck.controls.acts_on_wheels(),
+            tried_motion: TriedMotion::Coasting,
             force: match &self.force {
                 ForceSource::File(path) => Some(path.clone()),
                 ForceSource::Given => self.motion.source.force_file().cloned(),
