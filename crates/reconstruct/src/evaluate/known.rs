@@ -33,7 +33,8 @@ impl KnownEvidence {
     }
 
     /// What such evidence is alike among the staged collisions that reconstructions were measured on, all of
-    /// which are of a flank that was hit behind the CG; none of any other impact, and of a single car.
+    /// which are of a flank that was hit behind the CG and of a known rest pose; none of any other evidence, such as
+    /// a recorder alone, and of a single car.
     pub fn like(evidence: &Evidence, cars: &Cars) -> Option<Self> {
         let has_record = evidence.edr.or(evidence.striking_edr).is_some();
         let has_marks = !evidence.marks.is_empty() || !evidence.striking_marks.is_empty();
@@ -42,7 +43,8 @@ impl KnownEvidence {
             (false, true) => Self::WithoutEdr,
             (false, false) => Self::RestOnly,
         };
-        (!evidence.is_single_car() && cars.is_hit_behind_cg(evidence)).then_some(like)
+        let is_tried = evidence.rest.is_some() && cars.is_hit_behind_cg(evidence);
+        (!evidence.is_single_car() && is_tried).then_some(like)
     }
 
     /// What is used of the evidence.
@@ -65,13 +67,16 @@ mod tests {
     /// CG had held, though no other impact has been tried.
     #[test]
     fn an_impact_elsewhere_than_behind_the_cg_is_like_no_staged_collision() {
-        let like = |name: &str| {
+        let like = |name: &str, has_rest: bool| {
             let folder =
                 Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/evidence"));
-            let evidence = Evidence::load(&folder.join(name)).unwrap();
+            let mut evidence = Evidence::load(&folder.join(name)).unwrap();
+            evidence.rest = evidence.rest.filter(|_| has_rest);
             KnownEvidence::like(&evidence, &Cars::new(&evidence, None, None))
         };
-        assert_eq!(like("spin.toml"), Some(KnownEvidence::Everything));
-        assert_eq!(like("inline.toml"), None);
+        assert_eq!(like("spin.toml", true), Some(KnownEvidence::Everything));
+        assert_eq!(like("inline.toml", true), None);
+        // Neither is a recorder alone.
+        assert_eq!(like("spin.toml", false), None);
     }
 }

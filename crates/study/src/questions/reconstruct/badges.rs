@@ -145,13 +145,15 @@ pub(super) fn of_validation(
             ", sämtlich auf einheitlichem Reibbeiwert,",
         ),
         (true, false) => Phrase::new(
-            ", all of which were hit on a flank behind the CG, unlike this one,",
-            ", sämtlich anders als hier an der Flanke hinter dem Schwerpunkt getroffen,",
+            ", all of which, unlike this one, were hit on a flank behind the CG and had a known rest pose,",
+            ", sämtlich anders als hier an der Flanke hinter dem Schwerpunkt getroffen und mit bekannter \
+             Endlage,",
         ),
         (false, false) => Phrase::new(
-            ", all of which stood on one friction and were hit on a flank behind the CG, unlike this one,",
-            ", sämtlich auf einheitlichem Reibbeiwert und anders als hier an der Flanke hinter dem Schwerpunkt \
-             getroffen,",
+            ", all of which, unlike this one, were hit on a flank behind the CG and had a known rest pose, and which \
+             stood on one friction,",
+            ", sämtlich anders als hier an der Flanke hinter dem Schwerpunkt getroffen, mit bekannter Endlage und \
+             auf einheitlichem Reibbeiwert,",
         ),
     };
     let text = Phrase::new(
@@ -279,7 +281,7 @@ mod tests {
         let like = said(Some(KnownEvidence::RestOnly), false);
         assert!(like.contains("tried on 40") && !like.contains("unlike"), "{like}");
         let elsewhere = said(None, false);
-        assert!(elsewhere.contains("behind the CG, unlike this one"), "{elsewhere}");
+        assert!(elsewhere.contains("unlike this one, were hit"), "{elsewhere}");
         let pushed = said(Some(KnownEvidence::Everything), true);
         let validation = include_str!("../../../../../docs/VALIDATION.md");
         let in_90 = |quantity: &str| {

@@ -139,8 +139,8 @@ pub struct ReconstructReport {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub friction_zones: Vec<FrictionZoneReport>,
     /// What the evidence is alike among the staged collisions that reconstructions were measured on; none
-    /// of an impact elsewhere than on a flank behind the CG, like which none of them is, and of a single
-    /// car.
+    /// of an impact elsewhere than on a flank behind the CG or without a rest pose, like which none of them is,
+    /// and of a single car.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub known: Option<KnownEvidence>,
     /// Whether the cars meet again, and what was made of it; none where sampling was stopped before, and of
