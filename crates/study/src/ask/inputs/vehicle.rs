@@ -14,7 +14,7 @@ use impactlab_core::vehicle::{
 };
 
 /// The struck vehicle where neither the question nor the data set says which it is: the car that
-/// the shipped response network has learned.
+/// the shipped response network knows best.
 pub const DEFAULT_VEHICLE: Preset = Preset::Reference;
 
 /// The striking vehicle where the question does not say which it is.
@@ -112,8 +112,9 @@ fn named_or_learned(
         }
     };
     let reason = Phrase::new(
-        "{0}; this is the car that the shipped response network has learned from; another one: --vehicle",
-        "{0}; dies ist das Fahrzeug, an dem das mitgelieferte Bewegungsnetz gelernt hat; ein anderes: --vehicle",
+        "{0}; this one stands in, the car that the shipped response network knows best; another one: --vehicle",
+        "{0}; ersatzweise dieses, das Fahrzeug, das das mitgelieferte Bewegungsnetz am besten kennt; ein anderes: \
+         --vehicle",
     )
     .with(PhraseValue::phrase(reason));
     caveats.push(Caveat::assumed(CaveatSubject::Vehicle, name_of(DEFAULT_VEHICLE.id()), reason));
