@@ -44,6 +44,10 @@ impl<'a> Entry<'a> {
         }
     }
 
+    fn is_warning(&self) -> bool {
+        matches!(self, Self::Text(Block::Notice { .. }, _))
+    }
+
     /// Takes a block of one more variant, if it is said in this place.
     fn takes(&mut self, who: usize, block: &'a Block) -> bool {
         match (self, block) {
@@ -93,8 +97,14 @@ fn merged(columns: &[Speaker], wording: &Wording) -> Vec<Block> {
             let known = entries.iter_mut().enumerate().skip(next);
             let taken = { known }.find_map(|(at, entry)| entry.takes(who, block).then_some(at));
             let at = taken.unwrap_or_else(|| {
-                entries.insert(next, Entry::new(who, block));
-                next
+                // What a variant says below its warnings divides no warnings of the others.
+                let is_warning = |entry: &&Entry<'_>| entry.is_warning();
+                let others = match block {
+                    Block::Notice { .. } => 0,
+                    _ => entries.iter().skip(next).take_while(is_warning).count(),
+                };
+                entries.insert(next + others, Entry::new(who, block));
+                next + others
             });
             next = at + 1;
         }
@@ -347,6 +357,21 @@ mod tests {
         assert_eq!(titles, ["Quantity", "coasts, coasts again", "brakes"]);
         assert_eq!(table.rows, [["X", "4 m (3 to 5 m)", "2 m (1 to 3 m)"]]);
         assert!(table.caption.contains("90 %"), "{}", table.caption);
+    }
+
+    /// A table that one variant alone has stood between two warnings of the other one.
+    #[test]
+    fn warnings_of_all_stand_before_a_table_of_one() {
+        let wording = Wording::english(UnitSystem::Si);
+        let outside = Block::notice("outside");
+        let x = |at| table(&[["X", at, "", "1 to 2 m"]]);
+        let force = Block::Table(Table::new("Force", ["Quantity", "Value"], Vec::new()));
+        let rests = vec![outside.clone(), Block::notice("few draws"), x("4 m")];
+        let coasts = vec![outside.clone(), force, x("2 m")];
+        let said = [Said { name: "rests", blocks: rests }, Said { name: "coasts", blocks: coasts }];
+        let blocks = beside_each_other(&said, &wording);
+        assert_eq!(blocks[..2], [outside, Block::notice("rests: few draws")], "{blocks:?}");
+        assert!(matches!(&blocks[2], Block::Table(of) if of.caption == "coasts: Force"));
     }
 
     /// A table is divided where it has too many columns; no column loses the name of its variant.
