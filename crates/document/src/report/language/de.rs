@@ -265,7 +265,7 @@ pub(super) const WORDS: Words = Words {
     remedy_left_out: "Die fehlenden Fälle oder Ziehungen ansehen.",
     remedy_trained_on: "Das Netz an Fällen beurteilen, die es nicht kennt.",
     remedy_assumed: "Den Wert angeben, wenn er bekannt ist.",
-    remedy_not_used: "Ein Verfahren fragen, das den Wert verwendet.",
+    remedy_not_used: "Wo es darauf ankommt, mit einem Verfahren rechnen, das dies verwendet.",
     sources: "Quellen",
     number: "Nr.",
     source_title: "Quelle",

@@ -257,7 +257,7 @@ pub(super) const WORDS: Words = Words {
     remedy_left_out: "Look at the cases or draws that are left out.",
     remedy_trained_on: "Judge the network by cases that it has not seen.",
     remedy_assumed: "Give the value if it is known.",
-    remedy_not_used: "Ask a method that uses the value.",
+    remedy_not_used: "Where it matters, ask by a method that uses it.",
     sources: "Sources",
     number: "No.",
     source_title: "Source",
