@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 use crate::answers::write;
 use crate::commands::impactlab;
-use crate::program::{answer, text};
+use crate::program::{answer, ok, program, text};
 
 fn result<'a>(report: &'a Value, key: &str) -> &'a Value {
     let results = report["results"].as_array().unwrap();
@@ -51,6 +51,30 @@ fn a_violated_condition_is_a_warning() {
     let ran = impactlab(&args);
     assert!(ran.out.contains("warning: outside the domain"), "{}", ran.out);
     assert!(ran.out.contains("turned by 20 deg only"), "{}", ran.out);
+}
+
+/// The opinion of a case with a method by hand alone said that no answer allows one, and its source was in English.
+#[test]
+fn a_report_of_a_method_by_hand_has_an_opinion() {
+    let folder = TempDir::new().unwrap();
+    let asked = ["hand", "skid", "distance=30±0.5", "friction=0.7±0.05", "--print-request"];
+    let request = ok(program().args(asked).output().unwrap());
+    let head = r#"{"format": "impactlab case", "version": 2, "program": "0", "name": "hand","#;
+    let variant = format!(r#"{{"name": "a", "questions": [{request}]}}"#);
+    let case = format!(r#"{head} "notes": "", "shown": "a", "variants": [{variant}]}}"#);
+    let case = write(&folder, "hand.impactlab", &case);
+    let out = folder.path().join("de.md");
+    let args = ["report", text(&case), "--date", "2026-01-01", "--language", "de", "--out"];
+    ok(program().args(args).arg(&out).output().unwrap());
+    let told = std::fs::read_to_string(&out).unwrap();
+    let (opinion, annex) = told.split_once("Jede Zahl dieses Gutachtens").unwrap();
+    for part in ["am Beginn des Rutschens: 7", "Voraussetzung: Die Spuren beginnen dort"] {
+        assert!(opinion.contains(part), "{part}: {opinion}");
+    }
+    for wrong in ["Keine Antwort des Falls", "nicht berücksichtigt", "Fehler der Modelle"] {
+        assert!(!opinion.contains(wrong), "{wrong}: {opinion}");
+    }
+    assert!(annex.contains("Stoßziffer und Impulsverhältnis."), "{annex}");
 }
 
 /// The same mark as chord and as points.

@@ -2,6 +2,9 @@
 
 use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
+use crate::report::method::citation;
+use crate::report::numbers::fill;
+use crate::report::opinion::opinion_of_hand;
 use crate::report::parts::{InputRow, Part};
 use crate::report::{Block, InputClass};
 use impactlab_study::{Answer, HandInputReport, HandReport};
@@ -12,11 +15,15 @@ pub(super) fn part(answer: &Answer<HandReport>, context: Context<'_>) -> Part {
     let words = wording.words;
     let name = wording.term(answer.name);
     let holds = answer.method.holds().say(wording);
-    let mut blocks = vec![Block::paragraph(format!("{}; {holds}.", answer.equation))];
+    let question = fill(words.ask_hand, &[("name", &name)]);
+    let mut blocks = vec![
+        Block::paragraph(question.clone()),
+        Block::paragraph(format!("{}; {holds}.", answer.equation)),
+    ];
     blocks.extend(facts_with_meaning(&answer.result_table(), words.meaning_hand, context));
     let beside = [answer.sensitivity_table(), answer.bias_table()];
     blocks.extend(beside.iter().flatten().map(|table| facts_table(table, context)));
-    blocks.extend(answer.sources.iter().map(Block::paragraph));
+    blocks.extend(answer.sources.iter().map(|text| Block::paragraph(citation(text, wording))));
     let points = (answer.n_points > 0).then(|| InputRow {
         group: name.clone(),
         label: wording.term("points of the mark"),
@@ -44,6 +51,7 @@ pub(super) fn part(answer: &Answer<HandReport>, context: Context<'_>) -> Part {
     Part {
         kind: wording.key("hand"),
         title: format!("{}: {name}", wording.key("hand")),
+        opinion: Some(opinion_of_hand(answer, &question, context)),
         answer: blocks,
         inputs: answer.inputs.iter().map(input).chain(points).collect(),
         caveats: answer.caveats.clone(),

@@ -142,6 +142,7 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "Die Fahrzeuge berühren sich vor dem Ende erneut, und dieser Kontakt wird nicht berechnet: \
         wohin sie danach kommen, hat keine Wahrscheinlichkeit, und die Mediane sind die einer Bewegung ohne ihn.",
     forecast_yaw_picture: "Vorhersage: Gierwinkel des gestoßenen Fahrzeugs über der Zeit mit Bändern",
+    ask_hand: "Frage: Was ergibt „{name}“, von Hand gerechnet?",
     ask_replay: "Frage: Wie bewegte sich das Fahrzeug {vehicle} bis zum ersten Kontakt, nach Geschwindigkeit und \
         Lenkwinkel seines Unfalldatenspeichers ({name})?",
     meaning_replay: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn die Aufzeichnung \

@@ -138,6 +138,7 @@ pub(super) const WORDS: Words = Words {
     after_second_contact: "The vehicles meet again before the end, and that contact is not computed: where they go \
         after it has no probability, and the medians are those of a motion without it.",
     forecast_yaw_picture: "Forecast: heading of the struck vehicle over time with its bands",
+    ask_hand: "Question: what does “{name}” give, computed by hand?",
     ask_replay: "Question: how did {vehicle} move up to the first contact, by speed and steering of its event data \
         recorder ({name})?",
     meaning_replay: "Each value lies in its interval of 90 % with that probability if the record is of this motion and \

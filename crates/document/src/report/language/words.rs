@@ -112,6 +112,7 @@ pub(in crate::report) struct Words {
     pub forecast_yaw_picture: &'static str,
     pub meaning_hand: &'static str,
     pub ask_replay: &'static str,
+    pub ask_hand: &'static str,
     pub meaning_replay: &'static str,
     pub draws_replay: &'static str,
     pub replay_path_picture: &'static str,

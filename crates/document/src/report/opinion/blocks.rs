@@ -68,12 +68,14 @@ pub(in crate::report) fn opinion_blocks(asked: Asked<'_>) -> Vec<Block> {
         blocks.push(Block::heading(2, words.warnings));
         blocks.extend(warnings(asked.variants, asked.wording));
     }
-    if is_given {
+    // What is computed by hand says itself what it takes.
+    let methods = methods_of(&spoken);
+    if !methods.is_empty() {
         blocks.push(Block::heading(2, words.not_considered));
         let limit = |method: &Method| {
             format!("{}: {}", method.name(asked.wording), method.limits(asked.wording))
         };
-        blocks.push(Block::List { items: methods_of(&spoken).iter().map(limit).collect() });
+        blocks.push(Block::List { items: methods.iter().map(limit).collect() });
     }
     blocks.push(Block::heading(2, words.who));
     blocks.extend(who(asked));
@@ -253,7 +255,9 @@ fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
         blocks.push(Block::paragraph(words.held_without_network));
     }
     let errors = [known, words.known_error_single_car, words.known_error_driven];
-    blocks.extend(of_kinds(&methods_of(spoken), errors).map(Block::paragraph));
+    let methods = methods_of(spoken);
+    let errors = of_kinds(&methods, errors).filter(|_| !methods.is_empty());
+    blocks.extend(errors.map(Block::paragraph));
     blocks
 }
 

@@ -9,8 +9,8 @@ use impactlab_core::uncertainty::CaveatKind;
 use impactlab_core::units::Quantity;
 use impactlab_study::facts::{Fact, FactTable, Term, Value};
 use impactlab_study::{
-    Answer, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport, ReplayReport,
-    SimulateReport,
+    Answer, HandReport, ImpactReport, PredictForceReport, PredictMotionReport, ReconstructReport,
+    ReplayReport, SimulateReport,
 };
 
 /// Facts of a simulation that variants are compared by.
@@ -226,6 +226,28 @@ pub(in crate::report) fn opinion_of_impact(
         held: None,
         is_doubtful: false,
         hinges: vec![words.impact_hinges.to_owned()],
+    }
+}
+
+/// A method by hand.
+pub(in crate::report) fn opinion_of_hand(
+    report: &HandReport,
+    question: &str,
+    context: Context<'_>,
+) -> PartOpinion {
+    let words = opinion_words(context.wording.language);
+    let figures = rows_of(&report.result_table(), |_| true, context);
+    let holds = report.method.holds().say(context.wording);
+    let answer = capitalized(&told(&figures, 1));
+    PartOpinion {
+        rank: Rank::Hand,
+        question: question.to_owned(),
+        answer: format!("{answer} {}", fill(words.hand_holds, &[("holds", &holds)])),
+        courses: Vec::new(),
+        figures,
+        held: None,
+        is_doubtful: false,
+        hinges: vec![words.hand_hinges.to_owned()],
     }
 }
 

@@ -5,6 +5,8 @@ use crate::report::Block;
 /// How much of the case an answer decides. Of each variant the answers of the highest rank speak.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(in crate::report) enum Rank {
+    /// A number by hand.
+    Hand,
     /// The way up to the contact.
     Replay,
     /// The impulse alone.

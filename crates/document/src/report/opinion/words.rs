@@ -62,6 +62,8 @@ pub(super) struct OpinionWords {
     pub over_draws: &'static str,
     pub force_hinges: &'static str,
     pub impact_hinges: &'static str,
+    pub hand_holds: &'static str,
+    pub hand_hinges: &'static str,
     pub replay_hinges: &'static str,
     pub doubtful_record: &'static str,
     pub speed_hinges: &'static str,
@@ -116,7 +118,7 @@ const EN: OpinionWords = OpinionWords {
         not validated against real cars.",
     hinges: "What the answer hinges on",
     warnings: "Warnings",
-    no_warnings: "The program warns of nothing.",
+    no_warnings: "The program gives no warning.",
     warnings_told: "What this means and what can be done is in section 6.",
     not_considered: "What was not considered",
     who: "Expert, instruction and materials",
@@ -154,6 +156,8 @@ const EN: OpinionWords = OpinionWords {
         changes with each of them was not computed.",
     impact_hinges: "The impulse follows from masses, velocities, place of contact, restitution and friction of \
         section 3; how much it changes with each of them was not computed.",
+    hand_holds: "It holds if {holds}.",
+    hand_hinges: "What one standard deviation more of each input changes stands in the second table of section 1.",
     replay_hinges: "The speed at the contact follows from the recorded one, and from what is taken of the time between \
         the last sample and the contact; how much it changes with each of these was not computed.",
     doubtful_record: "The record is doubtful in what the warnings in section 6 name, which is not in the interval.",
@@ -203,7 +207,7 @@ const DE: OpinionWords = OpinionWords {
         in Abschnitt 7. Es ist nicht an realen Fahrzeugen validiert.",
     hinges: "Wovon die Antwort abhängt",
     warnings: "Warnungen",
-    no_warnings: "Das Programm warnt vor nichts.",
+    no_warnings: "Das Programm gibt keine Warnung aus.",
     warnings_told: "Bedeutung und Abhilfe: siehe Abschnitt 6.",
     not_considered: "Was nicht berücksichtigt wurde",
     who: "Sachverständiger, Auftrag und Anknüpfungstatsachen",
@@ -242,6 +246,8 @@ const DE: OpinionWords = OpinionWords {
         jedem davon ändert, wurde nicht berechnet.",
     impact_hinges: "Der Impuls folgt aus Massen, Geschwindigkeiten, Kontaktort, Stoßziffer und Reibbeiwert in Abschnitt \
         3; wie stark er sich mit jedem davon ändert, wurde nicht berechnet.",
+    hand_holds: "Voraussetzung: {holds}.",
+    hand_hinges: "Was eine Standardabweichung mehr jeder Eingabe ändert, steht in der zweiten Tabelle von Abschnitt 1.",
     replay_hinges: "Die Geschwindigkeit beim Kontakt folgt aus der aufgezeichneten und aus dem, was für die Zeit zwischen \
         dem letzten Abtastwert und dem Kontakt angenommen ist; wie stark sie sich mit jedem davon ändert, wurde nicht \
         berechnet.",
