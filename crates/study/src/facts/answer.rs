@@ -133,6 +133,7 @@ impl PredictMotionReport {
         let network = (Term::NetworkImpulse, &impulses.network_impulse_n_s);
         let momentum = (Term::MomentumImpulse, &impulses.momentum_impulse_n_s);
         let (moved_by, both) = match (&self.force_model, &self.recorded) {
+            (Some(_), _) if self.is_first_by_law() => (Term::ContactLaw, [network, momentum]),
             (Some(_), _) => (Term::ForceNetwork, [network, momentum]),
             (None, None) => (Term::MomentumSolution, [momentum, network]),
             (None, Some(_)) => (Term::Record, [momentum, network]),
@@ -147,6 +148,12 @@ impl PredictMotionReport {
         let verdict = Fact::new(Term::ImpulsesVerdict, Value::Term(impulses.verdict()));
         let moved_by = Fact::new(Term::MovedFirstBy, Value::Term(moved_by));
         [moved_by].into_iter().chain(sizes).chain([verdict]).collect()
+    }
+
+    /// Whether the first contact follows from the contact law in most draws, since the force network hardly
+    /// applies.
+    fn is_first_by_law(&self) -> bool {
+        self.contacts.is_some() && self.force_applicability.is_some_and(|share| share < 0.5)
     }
 
     /// Estimates of vehicle and road that the end depends on; none where no vehicles were drawn.
@@ -246,6 +253,21 @@ pub(super) mod tests {
         assert!(network < momentum);
         let [network, momentum] = size(&forecast(Some(ForceSource::Given)));
         assert!(momentum < network);
+    }
+
+    /// “The force of the first contact is that of: the force network” stood beside “in 96.6 % of the draws the
+    /// first contact follows from the contact law”.
+    #[test]
+    fn where_the_network_hardly_applies_the_contact_law_is_what_moves_the_vehicle_first() {
+        let report = forecast(None);
+        let moved_by = |share| {
+            let report = PredictMotionReport { force_applicability: Some(share), ..report.clone() };
+            let text = report.answer_table().to_text(&FactWriter::english(UnitSystem::Si));
+            let is_of_force = |cells: &Vec<String>| cells[0].starts_with("the force of the first");
+            let cells = text.rows.into_iter().map(|row| row.cells).find(is_of_force).unwrap();
+            cells[1].clone()
+        };
+        assert_eq!([1.0, 0.03].map(moved_by), ["the force network", "the contact law"]);
     }
 
     /// A lane that every draw comes into is told; one on which the vehicle was is not.

@@ -96,6 +96,7 @@ terms! {
     StrikingIsOver: "the striking vehicle is last on", "das stoßende Fahrzeug ist zuletzt auf";
     MovedFirstBy: "the force of the first contact is that of", "die Kraft des ersten Kontakts folgt";
     ForceNetwork: "the force network", "dem Kraftnetz";
+    ContactLaw: "the contact law", "dem Kontaktgesetz";
     MomentumSolution: "the momentum solution", "der Impulslösung";
     ImpulsesVerdict: "the impulses of force network and momentum solution",
         "die Impulse von Kraftnetz und Impulslösung";
