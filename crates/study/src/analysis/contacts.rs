@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::analysis::FEWEST_DRAWS;
 use impactlab_core::collision::contact::{ContactPhase, PhaseOfVehicle};
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::units::Estimate;
@@ -159,8 +160,6 @@ impl ContactsOutcome {
         };
         let hand_overs: Vec<_> =
             draws.iter().filter_map(|draw| Some((draw, draw.hand_over?))).collect();
-        let of_known =
-            |values: Vec<f64>| (!values.is_empty()).then(|| Estimate::from_draws(values));
         let later = |(draw, first): &(&PairDraw, _)| later_share(draw, first);
         let n_clamped = hand_overs.iter().filter(|(_, it)| it.is_clamped).count();
         let last_s = draws.iter().map(|draw| draw.end_s()).fold(0.0, f64::max).min(end_s);
@@ -181,13 +180,20 @@ impl ContactsOutcome {
             long_contact_probability: found.share(|draw| draw.contact_s(draw.end_s()) > 0.3),
             duration_s: spread(&|draw| draw.contact_s(draw.end_s())),
             impulse_n_s: spread(&PairDraw::impulse_n_s),
-            later_impulse_share: of_known(hand_overs.iter().map(later).collect()),
-            law_scale: of_known(hand_overs.iter().map(|(_, it)| it.scale).collect()),
+            later_impulse_share: of_some(hand_overs.iter().map(later).collect()),
+            law_scale: of_some(hand_overs.iter().map(|(_, it)| it.scale).collect()),
             clamped_share: n_clamped as f64 / hand_overs.len().max(1) as f64,
             phases: phases.take_while(|phase| phase.probability >= LEAST_SHARE).collect(),
             in_contact: (0..=n_instants).map(in_contact).collect(),
         }
     }
+}
+
+/// What some of the draws say; none of none, and the median alone of few.
+fn of_some(values: Vec<f64>) -> Option<Estimate> {
+    let n = values.len();
+    let estimate = (n > 0).then(|| Estimate::from_draws(values))?;
+    Some(if n < FEWEST_DRAWS { estimate.without_intervals() } else { estimate })
 }
 
 /// Share of the impulse of a draw that comes after its known force.
@@ -251,6 +257,15 @@ fn direction(angles_rad: &[f64]) -> Option<Estimate> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// “0.07077 (0.07077 to 0.07077)” was the share of one draw of 40.
+    #[test]
+    fn of_few_draws_the_median_alone_is_told() {
+        assert_eq!(of_some(Vec::new()), None);
+        let one = of_some(vec![0.07]).unwrap();
+        assert!(one.median == 0.07 && one.intervals.is_empty(), "{one:?}");
+        assert_eq!(of_some(vec![0.5; FEWEST_DRAWS]).unwrap().intervals.len(), 2);
+    }
 
     #[test]
     fn directions_on_both_sides_of_straight_back_are_near_each_other() {

@@ -46,6 +46,7 @@ pub use file::{DriveSetup, analyse_drive, analyse_recording};
 pub(crate) use forecast::bands_of_draws;
 pub use forecast::{ForceForecast, ForecastSettings, Mode, pulse_curves};
 pub use lane_chances::{PlaceChance, place_chances};
+pub(crate) use monte_carlo::FEWEST_DRAWS;
 pub use monte_carlo::MonteCarloError;
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBand, MotionBands};
 pub use motion_columns::motion_columns;

@@ -10,6 +10,9 @@ use impactlab_core::numerics::{jackknife_errors, quantile_error_of_sorted, quant
 /// Groups of draws that are left out in turn.
 const N_GROUPS: usize = 10;
 
+/// Fewest draws that have an interval of 90 %: one of them lies beyond each of its ends.
+pub(crate) const FEWEST_DRAWS: usize = 20;
+
 /// Standard errors of what is told of the end of a motion, because it is made of a limited number of
 /// draws. With other seeds the numbers differ by about as much.
 ///

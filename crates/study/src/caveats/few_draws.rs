@@ -1,15 +1,12 @@
 //! Draws that are so few that with another seed the answer would be another.
 
 use crate::PredictMotionReport;
-use crate::analysis::MonteCarloError;
+use crate::analysis::{FEWEST_DRAWS, MonteCarloError};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue};
 
 /// Largest standard error of the end of an interval by the number of draws, as a share of the width.
 const MOST_CHANCE: f64 = 0.1;
-
-/// Fewest draws that have an interval of 90 %: one of them lies beyond each of its ends.
-const FEWEST_DRAWS: usize = 20;
 
 /// Draws that are so few that with another seed the intervals would be others.
 ///

@@ -75,9 +75,9 @@ impl ContactsOutcome {
             Fact::estimate(Term::TotalImpulse, Quantity::Impulse, &self.impulse_n_s),
         ];
         let later = self.later_impulse_share.as_ref();
-        facts.extend(later.map(|share| Fact::estimate(Term::LaterShare, Quantity::Ratio, share)));
+        facts.extend(later.map(|share| Fact::drawn(Term::LaterShare, Quantity::Ratio, share)));
         let scale = self.law_scale.as_ref();
-        facts.extend(scale.map(|scale| Fact::estimate(Term::LawScale, Quantity::Ratio, scale)));
+        facts.extend(scale.map(|scale| Fact::drawn(Term::LawScale, Quantity::Ratio, scale)));
         if self.n_failed > 0 {
             facts.push(Fact::new(Term::LeftOut, Value::Count(self.n_failed)));
         }
