@@ -328,7 +328,7 @@ fn what_a_forecast_knows_roughly_has_two_digits() {
         "speed at the end, mean",
         "yaw rate at the end, mean",
         "area that holds the position",
-        "chance in the area",
+        "sampling error of the 90 % area",
         "distance between the two",
         "the other errs by less",
     ];

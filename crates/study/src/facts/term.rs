@@ -253,10 +253,10 @@ terms! {
         "eine andere Kraft und was das Netz an der Bewegung verbessert";
     NetworkCorrects: "what the network corrects of the motion",
         "was das Netz an der Bewegung verbessert";
-    MonteCarlo: "chance in the ends of the intervals", "Zufall in den Intervallgrenzen",
+    MonteCarlo: "sampling error of the interval ends", "Stichprobenfehler der Intervallgrenzen",
         "Largest standard error of an end of the 90 % intervals of place and heading, as a share of \
          the width, by the number of draws: with another seed they differ by about as much";
-    MonteCarloRegion: "chance in the area of 90 %", "Zufall in der Fläche von 90 %",
+    MonteCarloRegion: "sampling error of the 90 % area", "Stichprobenfehler der Fläche von 90 %",
         "Standard error of the area by the number of draws";
     Region90: "area that holds the position with 90 %", "Fläche, in der die Lage mit 90 % liegt";
     // Both vehicles through all contacts.
