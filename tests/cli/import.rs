@@ -36,6 +36,8 @@ fn a_recorder_becomes_evidence_and_controls() {
         let answer = answer(&[&args[..], &["--out", text(&out)]].concat());
         let (notes, files) = said(&answer);
         assert_eq!(files.len(), 2, "{files:?}");
+        // That its speed was one under the brake was not said.
+        assert!(notes.contains("the brake was on at that speed"), "{notes}");
         for part in ["Module 7", "complete file recorded: Yes", "EVENT RECORD 1 of 2", "cut off"] {
             assert!(notes.contains(part), "{part}: {notes}");
         }
@@ -209,6 +211,7 @@ fn a_side_of_lateral_values_is_said() {
             notes.contains(&format!("lateral Δv is taken as positive to the {side}")),
             "{notes}"
         );
+        assert!(!notes.contains("the brake was on"), "{notes}");
         let evidence: toml::Table =
             fs::read_to_string(out.join("evidence.toml")).unwrap().parse().unwrap();
         // Both are positive to the left in this program.

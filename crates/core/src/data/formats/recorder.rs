@@ -133,6 +133,17 @@ pub struct RecordedControls {
     pub is_anti_lock_active: Vec<bool>,
 }
 
+impl RecordedControls {
+    /// Whether the driver braked, or the anti-lock system was at work, at an instant that was recorded.
+    ///
+    /// - `time_s`: the instant, s.
+    pub fn is_braked_at(&self, time_s: f64) -> bool {
+        let at = self.time_s.iter().position(|of_s| (of_s - time_s).abs() < 1e-6);
+        let is_on = |of: &[bool]| at.and_then(|at| of.get(at)).is_some_and(|on| *on);
+        is_on(&self.is_braked) || is_on(&self.is_anti_lock_active)
+    }
+}
+
 impl RecorderRecord {
     /// Reads the record of an event.
     ///
