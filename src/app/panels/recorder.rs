@@ -109,7 +109,11 @@ fn recorded(record: &RecorderRecord, units: UnitSystem) -> Vec<(&'static str, St
     };
     let speed = record.speed_before;
     let speed = speed.map(|RecordedSpeed { speed_m_s, at_s }| {
-        format!("{} at {at_s} s", Quantity::Speed.shown(speed_m_s, units))
+        let braked = match record.before.is_braked_at(at_s) {
+            true => ", under the brake, which reads low by up to 18 %",
+            false => "",
+        };
+        format!("{} at {at_s} s{braked}", Quantity::Speed.shown(speed_m_s, units))
     });
     let rows = [
         ("Δv ahead", record.delta_v_ahead.map(delta_v)),
