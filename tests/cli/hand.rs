@@ -28,7 +28,7 @@ fn a_skid_has_one_speed_in_every_unit() {
         assert!(low < value && value < high, "{speed}");
     }
     let ran = impactlab(&["hand", "skid", "distance=30±0.5", "friction=0.7±0.05", "--units", "us"]);
-    assert!(ran.out.contains("mph") && ran.out.contains("speed at the begin"), "{}", ran.out);
+    assert!(ran.out.contains("mph") && ran.out.contains("speed at the start"), "{}", ran.out);
 }
 
 /// What the text assumes stands in the answer, and ±0 is exact.

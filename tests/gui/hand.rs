@@ -34,7 +34,7 @@ fn a_calculation_by_hand_is_answered_and_kept() {
     harness.state_mut().state_mut().project.hand = Some(request.clone());
     step_until(&mut harness, "the answer", |state| state.session.hand.ok().is_some());
     harness.run_steps(2);
-    let shown = harness.query_all_by_label_contains("speed at the begin of the slide").count();
+    let shown = harness.query_all_by_label_contains("speed at the start of the slide").count();
     assert!(shown > 0);
 
     let mut go_on = |_: impactlab_study::Event<'_>| ControlFlow::Continue(());

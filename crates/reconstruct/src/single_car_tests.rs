@@ -341,7 +341,7 @@ fn speeds_of_one_device_count_as_one() {
     assert!((ten - one).abs() < 1e-9, "{one} {ten}");
 }
 
-/// A place at the start says nothing of when the driver braked; the begin of a mark does.
+/// A place at the start says nothing of when the driver braked; the start of a mark does.
 #[test]
 fn braking_may_begin_long_after_a_stated_place() {
     let latest_s = |start: &str| {

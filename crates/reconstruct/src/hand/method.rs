@@ -34,11 +34,11 @@ pub enum HandMethod {
     Momentum,
     /// Crush energy from stiffness and depths of crush, with the change of velocity.
     CrushEnergy,
-    /// Speed at the begin of a spin-out to rest.
+    /// Speed at the start of a spin-out to rest.
     SpinOut,
     /// Critical speed from a yaw mark.
     YawMark,
-    /// Speed at the begin of a skid over one or several surfaces.
+    /// Speed at the start of a skid over one or several surfaces.
     Skid,
     /// Speed at take-off of a vehicle that flew.
     Airborne,

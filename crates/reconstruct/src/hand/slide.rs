@@ -52,7 +52,7 @@ const END_SPEED: HandField =
 
 const SPEED: HandOutput = HandOutput {
     key: "speed_m_s",
-    label: "speed at the begin of the slide",
+    label: "speed at the start of the slide",
     quantity: Quantity::Speed,
 };
 const DECELERATION: HandOutput = HandOutput {

@@ -125,7 +125,7 @@ fn run(
     is_known.then_some(YawMarkRun { steer_rad, true_speed_m_s, radius_m, mark_speed_m_s })
 }
 
-/// The points of the begin of a mark; `None` if it is too short.
+/// The points of the start of a mark; `None` if it is too short.
 fn first_part_m(mark: &TireMark) -> Option<Vec<[f64; 2]>> {
     let first = mark.points.first()?.place_m;
     let from_first = |place: [f64; 2]| (place[0] - first[0]).hypot(place[1] - first[1]);

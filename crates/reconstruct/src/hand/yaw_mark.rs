@@ -41,7 +41,7 @@ pub(super) const YAW_MARK: Formula = Formula {
     equation: "v = k √(g cos γ R (μ + e)/(1 − μ e)); R = c²/(8 h) + h/2 − b, or by least squares through points",
     holds: [
         "the mark is that of a wheel that rolls and slides sideways, with oblique striations and the rear wheel \
-         outside of the front one, at its begin, without brake or throttle, and μ is from a test skid there",
+         outside of the front one, at its start, without brake or throttle, and μ is from a test skid there",
         "Die Spur stammt von einem rollenden, seitlich gleitenden Rad, mit schrägen Streifen und dem Hinterrad \
          außerhalb des Vorderrads, an ihrem Beginn, ohne Bremse oder Gas, und μ aus einem Bremsversuch dort",
     ],
@@ -69,7 +69,7 @@ pub(super) const YAW_MARK: Formula = Formula {
     outputs: &[
         HandOutput {
             key: "speed_m_s",
-            label: "speed at the begin of the mark",
+            label: "speed at the start of the mark",
             quantity: Quantity::Speed,
         },
         HandOutput {

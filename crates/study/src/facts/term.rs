@@ -636,7 +636,7 @@ terms! {
         "Was eine Standardabweichung mehr einer Eingabe oder 1 % einer genauen ändert";
     HandBias: "The same formula on marks of the 4DOF model, whose speed is known",
         "Dieselbe Formel auf Spuren des 4DOF-Modells, deren Geschwindigkeit bekannt ist";
-    HandBiasTruth: "true speed at the begin of the mark", "wahre Geschwindigkeit am Beginn der Spur";
+    HandBiasTruth: "true speed at the start of the mark", "wahre Geschwindigkeit am Beginn der Spur";
     HandBiasSteer: "angle of the front wheels", "Winkel der Vorderräder";
     HandBiasRadius: "radius of its begin", "Radius ihres Beginns";
     HandBiasSpeed: "speed by the mark", "Geschwindigkeit nach der Spur";
