@@ -182,7 +182,7 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
     }
     for (does, score) in ["is hit", "hits"].into_iter().zip(OF_CARS) {
         let quantity = format!("place at the end of the vehicle that {does} from behind or across");
-        let of = Some(TriedMotion::OtherImpact);
+        let of = Some(TriedMotion::AcrossOrBehind);
         held.push(ends_held(others.iter(), score, (quantity, of)));
     }
     Ok(Found { subject: Measured::Pairs, tables: vec![rows], held, held_in_all: Vec::new() })

@@ -114,8 +114,10 @@ pub enum TriedMotion {
     Braked,
     /// Both vehicles, of which one hits a flank of the other and travels much the same way, as in a PIT.
     PushOnFlank,
-    /// Both vehicles after any other impact, such as a T-bone or rear-end collision.
-    OtherImpact,
+    /// Both vehicles, of which one is hit across or from behind, as in a T-bone or a rear-end collision.
+    AcrossOrBehind,
+    /// Both vehicles, of which one is hit in its front: no such pair was tried.
+    Untried,
 }
 
 impl HeldIntervals {
@@ -150,8 +152,11 @@ impl Measurement {
     }
 
     /// How often intervals held of motions of a kind; of all where those of the kind were not counted by
-    /// themselves.
+    /// themselves, and none where they were not tried.
     pub fn held_of(&self, kind: Option<TriedMotion>) -> Vec<&HeldIntervals> {
+        if kind == Some(TriedMotion::Untried) {
+            return Vec::new();
+        }
         let of = |kind| self.held.iter().filter(move |held| held.of == kind).collect::<Vec<_>>();
         let own = of(kind);
         if own.is_empty() { of(None) } else { own }

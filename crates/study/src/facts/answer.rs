@@ -32,7 +32,10 @@ impl PredictMotionReport {
         ];
         facts.extend(self.end_facts());
         facts.extend(self.place_facts());
-        facts.extend(self.impulses.iter().flat_map(|impulses| self.impulse_facts(impulses)));
+        facts.extend(match &self.impulses {
+            Some(impulses) => self.impulse_facts(impulses),
+            None => self.law_facts(),
+        });
         let verdict = self.rival.as_ref().map(|rival| self.ends_verdict(rival));
         facts.extend(verdict.map(|term| Fact::new(Term::EndsVerdict, Value::Term(term))));
         facts.extend(self.hinges().map(|value| Fact::new(Term::HingesOn, value)));
@@ -153,6 +156,22 @@ impl PredictMotionReport {
         [moved_by].into_iter().chain(sizes).chain([verdict]).collect()
     }
 
+    /// The impulse of the contact law beside that of the momentum solution, where the force network says nothing.
+    fn law_facts(&self) -> Vec<Fact> {
+        let Some(contacts) = self.contacts.as_ref().filter(|_| self.is_first_by_law()) else {
+            return Vec::new();
+        };
+        let momentum = self.implied_contact.as_ref().map(|implied| {
+            let impulse_n_s = implied.momentum.impulse_n_s;
+            Fact::vector(Term::MomentumBeside, Quantity::Impulse, impulse_n_s)
+        });
+        let by_law = vec![
+            Fact::new(Term::MovedFirstBy, Value::Term(Term::ContactLaw)),
+            Fact::estimate(Term::TotalImpulse, Quantity::Impulse, &contacts.impulse_n_s),
+        ];
+        by_law.into_iter().chain(momentum).collect()
+    }
+
     /// Whether the first contact follows from the contact law in most draws, since the force network hardly
     /// applies.
     fn is_first_by_law(&self) -> bool {
@@ -269,6 +288,10 @@ pub(super) mod tests {
         let has_total =
             |share| names(&with(share)).iter().any(|name| name.contains("all contacts"));
         assert!(has_total(0.03) && !has_total(1.0));
+        // Where the network says nothing, that of the momentum solution stands beside it.
+        let silent = PredictMotionReport { impulses: None, ..with(0.0) };
+        let both = ["impulse of all contacts", "momentum solution beside it"];
+        assert!(both.iter().all(|of| names(&silent).iter().any(|name| name == of)), "{silent:?}");
         let moved_by = |share| {
             let text = with(share).answer_table().to_text(&FactWriter::english(UnitSystem::Si));
             let is_of_force = |cells: &Vec<String>| cells[0].starts_with("the force of the first");

@@ -131,7 +131,9 @@ mod tests {
         // Where a kind was not counted by itself, all are told.
         let pairs = Measurement::shipped(Measured::Pairs).unwrap();
         assert_eq!(pairs.held_of(Some(TriedMotion::PushOnFlank)), pairs.held_of(None));
-        let others = pairs.held_of(Some(TriedMotion::OtherImpact));
+        assert!(pairs.held_of(Some(TriedMotion::Untried)).is_empty());
+        assert!(pairs.held_table(Some(TriedMotion::Untried)).is_none());
+        let others = pairs.held_of(Some(TriedMotion::AcrossOrBehind));
         let held_less = |of: &&HeldIntervals| of.n == 7 && of.share_in_90() < NINETY;
         assert!(others.len() == 2 && others.iter().all(held_less), "{others:?}");
     }

@@ -222,6 +222,11 @@ impl ForceScenario {
         self.normal_rad.is_none_or(is_across) && self.theta_b_rad.abs() <= FRAC_PI_4
     }
 
+    /// Whether the front of the struck vehicle is hit: the contact normal points backwards into it.
+    pub fn is_hit_in_front(&self) -> bool {
+        self.normal_rad.is_some_and(|normal_rad| normal_rad.cos() < -FRAC_PI_4.cos())
+    }
+
     /// Angle of the contact normal of a canonical scenario from across the struck vehicle, rad; zero where
     /// the scenario leaves it open.
     pub(crate) fn normal_turn_rad(&self) -> f64 {

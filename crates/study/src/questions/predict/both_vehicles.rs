@@ -116,9 +116,10 @@ impl PredictMotionRequest {
             MotionSource::Scenario { scenario: choice, .. } if follows_both => {
                 let collision = ForceScenario::from_scenario(&choice.load()?);
                 let collision = collision.map_err(|source| choice.unsolved(source))?;
-                Ok(match collision.is_push_on_flank() {
-                    true => TriedMotion::PushOnFlank,
-                    false => TriedMotion::OtherImpact,
+                Ok(match (collision.is_push_on_flank(), collision.is_hit_in_front()) {
+                    (true, _) => TriedMotion::PushOnFlank,
+                    (false, true) => TriedMotion::Untried,
+                    (false, false) => TriedMotion::AcrossOrBehind,
                 })
             }
             _ if struck.controls.acts_on_wheels() => Ok(TriedMotion::Braked),
@@ -277,20 +278,22 @@ mod tests {
     use super::*;
     use impactlab_core::collision::{ContactLocation, Scenario, Side};
 
-    /// A T-bone and a rear-end collision were told how often regions had held of PITs.
+    /// T-bone, rear-end and frontal collisions were told how often regions had held of PITs.
     #[test]
     fn a_t_bone_and_a_rear_end_collision_are_no_push_on_a_flank() {
-        let is_push = |side, heading_deg: f64, speed_m_s: f64| {
+        let kind = |side, heading_deg: f64, speed_m_s: f64| {
             let mut scenario = Scenario::example();
             let heading_rad = heading_deg.to_radians();
             scenario.striking.heading_rad = heading_rad;
             scenario.striking.vx_world_m_s = speed_m_s * heading_rad.cos();
             scenario.striking.vy_world_m_s = speed_m_s * heading_rad.sin();
             scenario.contact.location = ContactLocation::Side { side, offset_m: 0.0 };
-            ForceScenario::from_scenario(&scenario).unwrap().is_push_on_flank()
+            let collision = ForceScenario::from_scenario(&scenario).unwrap();
+            (collision.is_push_on_flank(), collision.is_hit_in_front())
         };
-        assert!(is_push(Side::Right, 18.0, 17.0));
-        assert!(!is_push(Side::Right, 90.0, 12.0));
-        assert!(!is_push(Side::Rear, 0.0, 22.0));
+        assert_eq!(kind(Side::Right, 18.0, 17.0), (true, false));
+        assert_eq!(kind(Side::Right, 90.0, 12.0), (false, false));
+        assert_eq!(kind(Side::Rear, 0.0, 22.0), (false, false));
+        assert_eq!(kind(Side::Front, 180.0, 12.0), (false, true));
     }
 }
