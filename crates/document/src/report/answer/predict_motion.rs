@@ -8,6 +8,7 @@ use crate::report::answer::Context;
 use crate::report::answer::atlas::in_atlas;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::answer::predict_force::applicability;
+use crate::report::answer::reconstruct::doubt_of;
 use crate::report::answer::stills::forecast_still;
 use crate::report::answer::vehicle_inputs::{name_in_question, vehicle_rows};
 use crate::report::answer::zone_inputs::zone_rows;
@@ -16,8 +17,18 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::opinion::opinion_of_forecast;
 use crate::report::parts::{InputRow, Part, PartPicture};
 use impactlab_core::data::Channel;
+use impactlab_core::uncertainty::{CaveatKind, Caveats};
 use impactlab_study::analysis::{DensityTask, MotionBands};
 use impactlab_study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest};
+
+/// That intervals are not to be relied on, where the case lies outside of what the networks have learned from and the
+/// methods disagree on it: none that was tried says anything of it.
+fn doubt(caveats: &Caveats, n_courses: usize, wording: &Wording) -> Option<String> {
+    let kinds = [CaveatKind::OutsideDomain, CaveatKind::Disagreement];
+    let labels = kinds.map(|kind| kind.label_in(wording.language));
+    let is_doubtful = kinds.into_iter().all(|kind| caveats.has(kind));
+    is_doubtful.then(|| doubt_of(&labels, true, n_courses, wording))
+}
 
 /// What a predicted motion contributes.
 pub(super) fn part(
@@ -45,9 +56,16 @@ pub(super) fn part(
     blocks.extend(of_first_force.iter().cloned());
     let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
     let meaning = if is_one { words.meaning_motion_one } else { words.meaning_motion };
-    match report.is_end_known() {
-        true => blocks.extend(facts_with_meaning(&report.motion_table(), meaning, context)),
-        false => {
+    let doubt = doubt(&report.caveats, report.courses.len(), wording);
+    match (report.is_end_known(), &doubt) {
+        (true, None) => {
+            blocks.extend(facts_with_meaning(&report.motion_table(), meaning, context));
+        }
+        (true, Some(doubt)) => {
+            blocks.push(facts_table(&report.motion_table(), context));
+            blocks.push(Block::paragraph(doubt));
+        }
+        (false, _) => {
             blocks.push(facts_table(&report.motion_table(), context));
             blocks.push(Block::paragraph(words.after_second_contact));
         }
@@ -67,10 +85,16 @@ pub(super) fn part(
     let sheet = (report.n_vehicles > 0).then_some(Method::DataSheet);
     let methods = [Method::ResponseNetwork, Method::FourDof];
     let contact = report.contacts.as_ref().map(|_| Method::ContactLaw);
+    let mut opinion = opinion_of_forecast(report, &question, context);
+    if let Some(doubt) = doubt {
+        opinion.answer = format!("{} {doubt}", opinion.answer);
+        opinion.held = None;
+        opinion.is_doubtful = true;
+    }
     Part {
         kind: words.title_motion.to_owned(),
         title: format!("{}: {name}", words.title_motion),
-        opinion: Some(opinion_of_forecast(report, &question, context)),
+        opinion: Some(opinion),
         answer: blocks,
         of_first_force,
         in_opinion,
@@ -134,4 +158,26 @@ fn pictures(
         PartPicture::figure(caption, forecast_channel_figure(&input, channel))
     });
     [still].into_iter().chain(yaw).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::uncertainty::Caveat;
+    use impactlab_core::units::UnitSystem;
+
+    /// Of a frontal collision the opinion told “the interval that holds with a probability of 90 %” below the warning
+    /// that the other method ends 49.9 m away.
+    #[test]
+    fn a_forecast_outside_of_the_domain_on_which_the_methods_disagree_is_doubted() {
+        let wording = Wording::english(UnitSystem::Si);
+        let told = |kinds: &[CaveatKind]| {
+            let caveats = kinds.iter().map(|kind| Caveat::new(*kind, String::new()));
+            doubt(&caveats.collect(), 1, &wording)
+        };
+        let (outside, disagree) = (CaveatKind::OutsideDomain, CaveatKind::Disagreement);
+        assert_eq!([told(&[outside]), told(&[disagree])], [None, None]);
+        let both = told(&[outside, disagree]).unwrap();
+        assert!(both.contains("not to be relied on") && both.contains("disagreement"), "{both}");
+    }
 }

@@ -119,7 +119,12 @@ fn doubts(report: &Answer<ReconstructReport>, wording: &Wording) -> Vec<&'static
 }
 
 /// That the figures are not to be relied on, nor the probabilities of courses of events where there are several.
-fn doubt_of(doubts: &[&str], has_intervals: bool, n_courses: usize, wording: &Wording) -> String {
+pub(super) fn doubt_of(
+    doubts: &[&str],
+    has_intervals: bool,
+    n_courses: usize,
+    wording: &Wording,
+) -> String {
     let words = wording.words;
     let template = if has_intervals { words.meaning_doubtful } else { words.doubtful_figures };
     let courses = if n_courses > 1 { words.doubtful_courses } else { "" };
