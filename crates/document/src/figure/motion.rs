@@ -9,6 +9,9 @@ use impactlab_core::units::{Quantity, UnitSystem, significant};
 pub const MOTION_CHANNELS: [Channel; 4] =
     [Channel::Vx, Channel::Vy, Channel::YawRate, Channel::Roll];
 
+/// Largest value, in the unit of display, of a channel that is zero but for rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// One channel over time: the simulation as a solid, the reference as a dashed line. A motion
 /// without the channel is left out.
 pub fn motion_figure(
@@ -21,8 +24,12 @@ pub fn motion_figure(
     let y = Axis::shown(channel.label(), channel.quantity(), units);
     let line = |name: &str, role, style, series: Option<&TimeSeries>| {
         let series = series?;
-        let samples = series.time_s().iter().zip(series.get(channel)?);
-        let points = samples.map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)]).collect();
+        let values = series.get(channel)?.iter().map(|value| y.unit.from_si(*value));
+        // Rounding would fill the axis.
+        let is_zero = values.clone().all(|value| value.abs() < ROUNDING);
+        let values = values.map(|value| if is_zero { 0.0 } else { value });
+        let samples = series.time_s().iter().zip(values);
+        let points = samples.map(|(t, value)| [x.unit.from_si(*t), value]).collect();
         Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let elements = [
@@ -81,4 +88,24 @@ pub fn motion_readout(
         (None, None) => return channel.label().to_owned(),
     };
     format!("{} {values} {}", channel.label(), unit.symbol)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The yaw rate of a car that ran straight into a wall had an axis of “0.000000000”.
+    #[test]
+    fn a_channel_that_is_zero_but_for_rounding_is_drawn_as_zero() {
+        let drawn = |rates_rad_s: [f64; 3]| -> Vec<f64> {
+            let mut series = TimeSeries::new(vec![0.0, 0.1, 0.2]).unwrap();
+            series.insert(Channel::YawRate, rates_rad_s.to_vec()).unwrap();
+            let motions = [Some(&series), None];
+            let figure = motion_figure("wall", Channel::YawRate, motions, UnitSystem::Si);
+            let [FigureElement::Line(line)] = &figure.elements[..] else { return Vec::new() };
+            line.points.iter().map(|point| point[1]).collect()
+        };
+        assert_eq!(drawn([0.0, 3e-13, -8e-13]), [0.0; 3]);
+        assert!(drawn([0.0, 3e-13, 1e-3])[2] > 0.05);
+    }
 }
