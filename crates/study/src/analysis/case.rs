@@ -135,21 +135,8 @@ mod tests {
 
     use super::*;
     use impactlab_core::data::{Channel, Dataset};
+    use impactlab_core::vehicle::Preset;
     use impactlab_core::vehicle::frames::world_from_body;
-    use impactlab_core::vehicle::{Ending, Integrator, Preset};
-
-    fn settings(struck: Preset) -> Settings {
-        Settings {
-            struck: struck.parameters(),
-            striking: Preset::Bullet2000.parameters(),
-            integrator: Integrator::Rk4,
-            ending: Ending::default(),
-            duration_s: 4.0,
-            ends_at_rest: false,
-            one_contact: false,
-            friction_zones: Vec::new(),
-        }
-    }
 
     fn load(name: &str) -> Dataset {
         let mut report = |_| ControlFlow::Continue(());
@@ -167,7 +154,7 @@ mod tests {
         // The finite-element runs have no tires, so that the 4DOF model without friction must
         // reproduce them.
         let dataset = load("fea-wide");
-        let mut settings = settings(Preset::Target);
+        let mut settings = Settings::of_preset(Preset::Target);
         let struck = &mut settings.struck;
         struck.tires.friction = 1e-9;
         struck.tires.rolling_resistance = 0.0;
@@ -196,7 +183,8 @@ mod tests {
     #[test]
     fn a_trajectory_case_has_reference_and_error() {
         let dataset = load("trajectories-pulse");
-        let analysis = analyse_case(&dataset.cases[0], &settings(Preset::Reference)).unwrap();
+        let analysis =
+            analyse_case(&dataset.cases[0], &Settings::of_preset(Preset::Reference)).unwrap();
         assert!(analysis.reference.is_some());
         assert!(analysis.error.unwrap().average_error_m < 1.0);
     }

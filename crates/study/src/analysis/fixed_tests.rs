@@ -2,7 +2,6 @@ use std::path::Path;
 
 use super::*;
 use impactlab_core::data::Channel;
-use impactlab_core::vehicle::{Ending, Integrator};
 
 fn scenario(object: &str) -> Scenario {
     let text = format!(
@@ -17,16 +16,7 @@ fn scenario(object: &str) -> Scenario {
 #[test]
 fn a_car_bounces_off_an_object_that_does_not_move() {
     for object in ["fixed = \"wall\"", "fixed = \"pole\"\ndiameter_m = 0.5"] {
-        let settings = Settings {
-            struck: Preset::Target.parameters(),
-            striking: Preset::Bullet2000.parameters(),
-            ending: Ending::default(),
-            integrator: Integrator::Rk4,
-            duration_s: 1.0,
-            ends_at_rest: false,
-            one_contact: false,
-            friction_zones: Vec::new(),
-        };
+        let settings = Settings { duration_s: 1.0, ..Settings::of_preset(Preset::Target) };
         let scenario = scenario(object);
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
         let striking = analysis.striking.unwrap();

@@ -94,6 +94,23 @@ pub struct Settings {
     pub friction_zones: Vec<FrictionZone>,
 }
 
+#[cfg(test)]
+impl Settings {
+    /// A coasting preset that another one has struck, over 4 s through all contacts.
+    fn of_preset(struck: impactlab_core::vehicle::Preset) -> Self {
+        Self {
+            struck: struck.parameters(),
+            striking: impactlab_core::vehicle::Preset::Bullet2000.parameters(),
+            ending: Ending::default(),
+            integrator: Integrator::Rk4,
+            duration_s: 4.0,
+            ends_at_rest: false,
+            one_contact: false,
+            friction_zones: Vec::new(),
+        }
+    }
+}
+
 /// Outline and motion of the striking vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleTrack {

@@ -55,7 +55,7 @@ mod tests {
 
     use super::*;
     use impactlab_core::compare::PairRecords;
-    use impactlab_core::vehicle::{Ending, Integrator};
+    use impactlab_core::vehicle::Preset;
 
     #[test]
     fn a_recorded_pair_has_both_motions_their_contacts_and_the_record_beside() {
@@ -65,12 +65,9 @@ mod tests {
         let settings = Settings {
             struck,
             striking,
-            ending: Ending::default(),
-            integrator: Integrator::Rk4,
             duration_s: 1.0,
             ends_at_rest: true,
-            one_contact: false,
-            friction_zones: Vec::new(),
+            ..Settings::of_preset(Preset::Target)
         };
         let analysis = analyse_recorded_pair(&case, &settings).unwrap();
         let motion = analysis.simulation.unwrap().series;

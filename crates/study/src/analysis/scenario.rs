@@ -277,23 +277,14 @@ mod tests {
     use impactlab_core::numerics::interpolate;
     use impactlab_core::units::STANDARD_GRAVITY_M_S2;
     use impactlab_core::vehicle::{
-        BRAKE_TORQUES, Braking, Ending, HeldSteer, Integrator, PitDriver, Preset, StabilityControl,
+        BRAKE_TORQUES, Braking, Ending, HeldSteer, PitDriver, Preset, StabilityControl,
     };
 
     /// A report gave the struck car 4.9 m in one section and 4.52 m in another.
     #[test]
     fn a_car_has_the_size_that_the_scenario_says() {
         let scenario = Scenario::example();
-        let settings = Settings {
-            struck: Preset::Reference.parameters(),
-            striking: Preset::Bullet2000.parameters(),
-            ending: Ending::default(),
-            integrator: Integrator::Rk4,
-            duration_s: 0.5,
-            ends_at_rest: false,
-            one_contact: false,
-            friction_zones: Vec::new(),
-        };
+        let settings = Settings { duration_s: 0.5, ..Settings::of_preset(Preset::Reference) };
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
         assert_eq!(Footprint::from(&analysis.vehicle.geometry), scenario.struck.footprint());
         let before_m = settings.struck.geometry.outer_length_m;
@@ -310,16 +301,7 @@ mod tests {
             "/../../assets/scenarios/pit_right_rear.toml"
         )))
         .unwrap();
-        let settings = Settings {
-            struck: Preset::Target.parameters(),
-            striking: Preset::Bullet2000.parameters(),
-            ending: Ending::default(),
-            integrator: Integrator::Rk4,
-            duration_s: 3.0,
-            ends_at_rest: false,
-            one_contact: false,
-            friction_zones: Vec::new(),
-        };
+        let settings = Settings { duration_s: 3.0, ..Settings::of_preset(Preset::Target) };
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
         let solution = scenario.solve().unwrap();
         let motion = analysis.simulation.unwrap().series;
@@ -344,14 +326,10 @@ mod tests {
         let ending = Ending { steer, brake, ..Ending::default() };
         for one_contact in [false, true] {
             let settings = Settings {
-                struck: Preset::Target.parameters(),
-                striking: Preset::Bullet2000.parameters(),
                 ending: ending.clone(),
-                integrator: Integrator::Rk4,
                 duration_s: 2.0,
-                ends_at_rest: false,
                 one_contact,
-                friction_zones: Vec::new(),
+                ..Settings::of_preset(Preset::Target)
             };
             let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
             assert_eq!(analysis.controls, ending.controls(&analysis.vehicle));
@@ -382,16 +360,7 @@ mod tests {
     #[test]
     fn vehicles_that_push_each_other_stay_apart() {
         let scenario = Scenario::example();
-        let settings = Settings {
-            struck: Preset::Target.parameters(),
-            striking: Preset::Bullet2000.parameters(),
-            integrator: Integrator::Rk4,
-            ending: Ending::default(),
-            duration_s: 4.0,
-            ends_at_rest: false,
-            one_contact: false,
-            friction_zones: Vec::new(),
-        };
+        let settings = Settings::of_preset(Preset::Target);
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
         assert_eq!(analysis.second_contact, None);
         let phase = analysis.phases[0];
@@ -423,16 +392,7 @@ mod tests {
     #[test]
     fn vehicles_that_meet_again_are_said_to() {
         let mut scenario = Scenario::example();
-        let settings = Settings {
-            struck: Preset::Target.parameters(),
-            striking: Preset::Bullet2000.parameters(),
-            integrator: Integrator::Rk4,
-            ending: Ending::default(),
-            duration_s: 4.0,
-            ends_at_rest: false,
-            one_contact: true,
-            friction_zones: Vec::new(),
-        };
+        let settings = Settings { one_contact: true, ..Settings::of_preset(Preset::Target) };
         let meets = |scenario: &Scenario| {
             let analysis = analyse_scenario(scenario, &PulseSetup::default(), &settings).unwrap();
             let (struck, striking) =
