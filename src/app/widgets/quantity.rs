@@ -299,6 +299,16 @@ mod tests {
     use super::*;
     use impactlab_core::ranges::BODY_MASS;
 
+    /// Types a text into the next field and leaves it.
+    fn type_in<S>(harness: &mut Harness<'_, S>, typed: &str) {
+        harness.key_press(Key::Tab);
+        harness.run();
+        harness.event(Event::Text(typed.to_owned()));
+        harness.run();
+        harness.key_press(Key::Enter);
+        harness.run();
+    }
+
     #[test]
     fn a_duration_of_whole_minutes_has_no_seconds() {
         let text = |seconds| duration_text(Duration::from_secs(seconds));
@@ -327,12 +337,7 @@ mod tests {
             ("4100 lb", 4100.0 * 0.453_592_37, true),
             ("1,86 t", 1860.0, true),
         ] {
-            harness.key_press(Key::Tab);
-            harness.run();
-            harness.event(Event::Text(typed.to_owned()));
-            harness.run();
-            harness.key_press(Key::Enter);
-            harness.run();
+            type_in(&mut harness, typed);
             assert_eq!(*harness.state(), stays, "{typed}");
             let says = harness.query_by_label_contains("not possible").is_some();
             assert_eq!(says, !is_taken, "{typed}");
@@ -365,12 +370,7 @@ mod tests {
         harness.run();
         let place = |harness: &Harness<'_, f64>| harness.get_by_label("below").rect();
         let before = place(&harness);
-        harness.key_press(Key::Tab);
-        harness.run();
-        harness.event(Event::Text("-3".to_owned()));
-        harness.run();
-        harness.key_press(Key::Enter);
-        harness.run();
+        type_in(&mut harness, "-3");
         assert!(harness.query_by_label_contains("not possible").is_some());
         assert_eq!(place(&harness), before);
         // It is said again whenever the field is looked at, and not while another thing is done.
@@ -444,20 +444,10 @@ mod tests {
         for (typed, stays) in
             [("12", Some(12)), ("1000", Some(12)), ("2.5", Some(12)), ("0", None), ("7", Some(7))]
         {
-            harness.key_press(Key::Tab);
-            harness.run();
-            harness.event(Event::Text(typed.to_owned()));
-            harness.run();
-            harness.key_press(Key::Enter);
-            harness.run();
+            type_in(&mut harness, typed);
             assert_eq!(*harness.state(), stays, "{typed}");
         }
-        harness.key_press(Key::Tab);
-        harness.run();
-        harness.event(Event::Text(" ".to_owned()));
-        harness.run();
-        harness.key_press(Key::Enter);
-        harness.run();
+        type_in(&mut harness, " ");
         assert_eq!(*harness.state(), None);
     }
 
@@ -479,12 +469,7 @@ mod tests {
             ("2000000000000000", 42, false),
             ("1000", 1000, true),
         ] {
-            harness.key_press(Key::Tab);
-            harness.run();
-            harness.event(Event::Text(typed.to_owned()));
-            harness.run();
-            harness.key_press(Key::Enter);
-            harness.run();
+            type_in(&mut harness, typed);
             assert_eq!(*harness.state(), stays, "{typed}");
             let says = harness.query_by_label_contains("not possible").is_some();
             assert_eq!(says, !is_taken, "{typed}");
