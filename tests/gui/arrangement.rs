@@ -7,15 +7,11 @@ use impactlab::app::{App, Command, Group, Output, Pane, Subject, VariantCommand,
 use impactlab_core::vehicle::{Braking, DataSheet, Ending, LibraryVehicle, SheetQuantity};
 use impactlab_study::{MotionSource, VehicleChoice};
 
-use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 use crate::pictures::save;
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
 const FEA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a impactlab::app::State {
-    harness.state().state()
-}
 
 fn contents_of(harness: &Harness<'_, App>) -> Vec<impactlab::app::ContentsEntry> {
     let state = state(harness);

@@ -13,17 +13,13 @@ use impactlab_document::figure::FigureElement;
 use impactlab_sweep::atlas::{Atlas, Axis, MIN_ROWS};
 use impactlab_sweep::{Column, Outcome, Rows, RowsMeta};
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, state, step_until};
 use crate::pictures::save;
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
 
 /// Rows in each cell.
 const ROWS: u64 = 2 * MIN_ROWS;
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 /// Speeds of 10 to 40 m/s, closing at 1 to 9 m/s, two roads, without and with stability control.
 fn axes() -> Vec<Axis> {

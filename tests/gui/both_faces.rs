@@ -16,7 +16,7 @@ use impactlab_study::{ForceSource, ModelChoice, Question, Request, SimulateAnswe
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, state, step_until};
 use crate::reconstruct::evidence_in;
 use crate::recorder::BEFORE;
 
@@ -107,10 +107,6 @@ impl<'a> CommandLine<'a> {
             [request, printed_request].map(|of| without(of, self.not_compared));
         assert_eq!(request, printed_request, "{:?}", self.args);
     }
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 /// Returns the question that was asked last, and its answer.

@@ -23,13 +23,9 @@ use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, Variant, unpack};
 use impactlab_study::{CheckRequest, ForceSource, Library, ModelChoice, Report, Request};
 
-use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 
 const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 /// The scenario in the form, to be edited.
 fn scenario<'a>(harness: &'a mut Harness<'_, App>) -> &'a mut Scenario {

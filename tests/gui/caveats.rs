@@ -4,7 +4,7 @@
 use egui::OutputCommand;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use impactlab::app::{App, Command, Output, Pane, State};
+use impactlab::app::{App, Command, Output, Pane};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -13,7 +13,7 @@ use impactlab_document::figure::{
 };
 use impactlab_draw::{Canvas, figure_image, picture_ui, theme};
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, state, step_until};
 
 const SENTENCE: &str =
     "mass of the striking vehicle [kg] is 3900, the force network has learned from 800 to 3000";
@@ -69,10 +69,6 @@ fn a_picture_has_one_line_of_what_restricts_it() {
     let label = node.label().or(node.value()).expect("a text");
     assert!(label.ends_with("and 39 more, listed with the answer"), "{label}");
     assert!(line.rect().max.y <= 300.0 && line.rect().height() < 20.0, "{:?}", line.rect());
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 /// The text that the last frame has put on the clipboard.

@@ -4,7 +4,7 @@ use egui::Color32;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use image::RgbaImage;
-use impactlab::app::{App, Command, Pane, PlaybackCommand, State};
+use impactlab::app::{App, Command, Pane, PlaybackCommand};
 use impactlab_core::collision::Scenario;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
@@ -15,7 +15,7 @@ use impactlab_document::figure::{Figure, Role, control_figures};
 use impactlab_draw::{Canvas, figure_image, theme};
 use impactlab_study::analysis::{PulseSetup, Settings, analyse_scenario};
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, state, step_until};
 use crate::pictures::{picture_folder, save};
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
@@ -76,10 +76,6 @@ fn the_curves_of_both_vehicles_are_drawn_on_light_and_on_dark_ground() {
             }
         }
     }
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 #[test]

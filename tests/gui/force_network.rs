@@ -15,7 +15,7 @@ use impactlab_networks::force::{ForceCase, ForceConfig, ForceScenario, train};
 use impactlab_networks::learning::{ModelFile, TrainSettings, TrainingSet};
 use impactlab_study::{ConfigChoice, ForceEvaluation};
 
-use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 use crate::pictures::save;
 use crate::settings::{QUICK_CRUSH, SMALL_FORCE};
 
@@ -62,10 +62,6 @@ fn small() -> &'static Small {
         model.save(&small.model(), Existing::Refuse).expect("it is written");
         small
     })
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 /// The collision in the form of the force prediction.

@@ -16,7 +16,7 @@ use impactlab_study::ConfigChoice;
 use impactlab_sweep::Outcome;
 use impactlab_sweep::atlas::Atlas;
 
-use crate::harness::{apply, is_idle, open_at, step_until};
+use crate::harness::{apply, is_idle, open_at, state, step_until};
 use crate::pictures::save;
 use crate::settings::SMALL_FORCE;
 
@@ -35,10 +35,6 @@ folds = 2
 
 fn opened(path: &str) -> Harness<'static, App> {
     open_at(([1280.0, 800.0], 1.0), &[path], None)
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 /// Draws a step of a tutorial, whose picture must be in the guide and of this size.

@@ -37,6 +37,11 @@ impl TestRenderer for SoftwareTestRenderer {
     }
 }
 
+/// What the app holds.
+pub fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
 /// Opens the app on these paths.
 pub fn open(paths: &[&str]) -> Harness<'static, App> {
     open_with(paths, None)

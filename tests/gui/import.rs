@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, State};
 
-use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 use crate::pictures::save;
 
 /// A pulse of 60 kN over 0.1 s, as a German measuring program exports it: one component, metadata
@@ -21,10 +21,6 @@ pub fn german_export(header: &str) -> String {
         text.push_str(&format!("{time_ms:.1};{force_kn};ok\n").replacen('.', ",", 1));
     }
     text
-}
-
-pub fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 /// Waits until the dialog shows what its choices give.

@@ -3,8 +3,8 @@
 use egui_kittest::kittest::Queryable;
 use impactlab::app::State;
 
-use crate::harness::{is_idle, open, step_until};
-use crate::import::{choose, map, settle, state, write};
+use crate::harness::{is_idle, open, state, step_until};
+use crate::import::{choose, map, settle, write};
 use crate::pictures::save;
 
 /// A log of a bend to the left of 50 m at 15 m/s whose y axis points to the right.

@@ -4,8 +4,8 @@
 use egui_kittest::kittest::Queryable;
 use impactlab::app::Command;
 
-use crate::harness::{apply, is_idle, open, step_until};
-use crate::import::{choose, map, settle, state, write};
+use crate::harness::{apply, is_idle, open, state, step_until};
+use crate::import::{choose, map, settle, write};
 use crate::pictures::save;
 
 /// Forces with three decimals or with thousands: nothing in the file says which.

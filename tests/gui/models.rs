@@ -12,7 +12,7 @@ use impactlab::app::{
 };
 use impactlab_study::{ConfigChoice, ModelChoice};
 
-use crate::harness::{apply, is_idle, open_with, step_until};
+use crate::harness::{apply, is_idle, open_with, state, step_until};
 use crate::pictures::save;
 use crate::settings::{SMALL_FORCE, SMALL_RESPONSE};
 
@@ -86,10 +86,6 @@ impl Desk {
         names.sort();
         names
     }
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 fn entries<'a>(harness: &'a Harness<'_, App>) -> &'a [ArchiveEntry] {

@@ -13,7 +13,7 @@ use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_reconstruct::evidence::{Edr, Evidence, RestPose, Stated};
 use impactlab_study::{EvidenceChoice, VehicleChoice};
 
-use crate::harness::{apply, open, open_at, open_with, step_until};
+use crate::harness::{apply, open, open_at, open_with, state, step_until};
 use crate::looks::collisions;
 use crate::pictures::save;
 
@@ -44,10 +44,6 @@ pub fn evidence_in(folder: &Path) -> PathBuf {
     let path = folder.join("evidence.toml");
     std::fs::write(&path, EVIDENCE).expect("a file");
     path
-}
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
 }
 
 fn evidence(harness: &Harness<'_, App>) -> Evidence {

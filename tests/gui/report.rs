@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, CaseCommand, Command, Leaving, MadeReport, Output, ReportCommand, State, TaskKey,
-    Workspace,
+    App, CaseCommand, Command, Leaving, MadeReport, Output, ReportCommand, TaskKey, Workspace,
 };
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
@@ -16,16 +15,12 @@ use impactlab_study::case_file::CaseFile;
 use impactlab_study::{Library, MotionSource};
 use tempfile::TempDir;
 
-use crate::harness::{apply, open_at, step_until, type_into};
+use crate::harness::{apply, open_at, state, step_until, type_into};
 use crate::looks::collisions;
 use crate::pictures::save;
 
 const PIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/examples/pit.impactlab");
 const DATE: &str = "2026-11-24";
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 fn made<'a>(harness: &'a Harness<'_, App>) -> &'a MadeReport {
     state(harness).session.report.made.as_ref().expect("a report")

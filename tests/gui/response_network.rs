@@ -10,15 +10,11 @@ use impactlab::app::{
 };
 use impactlab_study::{ConfigChoice, ForceSource, ModelChoice};
 
-use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 use crate::pictures::save;
 use crate::settings::SMALL_RESPONSE;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
     let subject = Subject::Case { dataset: dataset.into(), case: case.to_owned() };

@@ -6,16 +6,12 @@ use std::path::Path;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, CaseCommand, Command, Leaving, Network, Output, Pane, State, Subject};
+use impactlab::app::{App, CaseCommand, Command, Leaving, Network, Output, Pane, Subject};
 use impactlab_core::data::Severity;
 
-use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 
 const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 /// The messages of the status line as one text.
 fn messages(harness: &Harness<'_, App>) -> String {

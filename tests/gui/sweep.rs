@@ -7,12 +7,8 @@ use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Output, State, SweepCommand, TaskKey, Workspace};
 use impactlab_sweep::{chunk_path, read_rows};
 
-use crate::harness::{apply, open, step_until};
+use crate::harness::{apply, open, state, step_until};
 use crate::pictures::save;
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 /// A plan of a PIT that is followed for a moment.
 fn plan_in(folder: &Path, name: &str, n: u64, chunk: u64) -> PathBuf {

@@ -11,15 +11,11 @@ use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet, built_in_veh
 use impactlab_study::VehicleChoice;
 use impactlab_study::case_file::CaseFile;
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, state, step_until};
 use crate::import::choose;
 use crate::pictures::save;
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
-
-fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
-    harness.state().state()
-}
 
 fn is_forecast(state: &State) -> bool {
     let forecast = &state.session.response.forecast;

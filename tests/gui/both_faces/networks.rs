@@ -8,8 +8,8 @@ use impactlab::app::{
 };
 use impactlab_study::ConfigChoice;
 
-use crate::both_faces::{CommandLine, FORCES, TRAJECTORIES, finished, open_on, state, write};
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::both_faces::{CommandLine, FORCES, TRAJECTORIES, finished, open_on, write};
+use crate::harness::{apply, is_idle, open, state, step_until};
 use crate::settings::{QUICK_CRUSH, SMALL_FORCE, SMALL_RESPONSE};
 
 fn train(harness: &mut Harness<'_, App>, network: Network) {
