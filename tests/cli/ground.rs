@@ -7,13 +7,9 @@ use std::path::Path;
 
 use tempfile::TempDir;
 
-use crate::program::{json, ok, program};
+use crate::program::{json, ok, program, text};
 
 const SITE: &str = "assets/sites/country-road/site.toml";
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
 
 /// A site that is ice all over.
 fn icy(folder: &Path, friction: f64) -> String {

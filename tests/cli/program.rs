@@ -71,6 +71,15 @@ pub fn answer(args: &[&str]) -> Value {
     json(&ok(program().args(args).arg("--json").output().unwrap()))
 }
 
+/// Names of what is in a folder, in order.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = folder.read_dir().unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
 /// A path as an argument.
 pub fn text(path: &Path) -> &str {
     path.to_str().unwrap()

@@ -13,7 +13,9 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::force::train;
-use crate::program::{SCENARIO, TRAJECTORIES, json, kill_at_checkpoint, ok, program, text};
+use crate::program::{
+    SCENARIO, TRAJECTORIES, json, kill_at_checkpoint, names, ok, program, text,
+};
 
 /// What a command that must fail prints at its end.
 fn error(command: &mut Command) -> String {
@@ -29,14 +31,6 @@ fn command(args: &[&str], out: &Path) -> Command {
     let mut command = program();
     command.args(args).arg("--out").arg(out);
     command
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 const PREDICT_FORCE: [&str; 4] = ["predict", "force", "--scenario", SCENARIO];

@@ -16,6 +16,8 @@ use rand::{RngExt, SeedableRng};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::program::names;
+
 /// Size of the file that is written over and over, bytes: written in about the time that bringing
 /// it to the disk takes.
 const SIZE: usize = 1 << 20;
@@ -95,14 +97,6 @@ fn kill(writer: &str, folder: &Path, written: &Path, moment: Duration) {
 fn moments() -> impl Iterator<Item = Duration> {
     let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
     std::iter::repeat_with(move || LATEST.mul_f64(rng.random::<f64>())).take(n_kills())
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
 }
 
 #[test]

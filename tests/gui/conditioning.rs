@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Network, Pane, State, Subject, TrainingMode};
+use impactlab::app::{App, Command, Network, Pane, Subject, TrainingMode};
 use impactlab_core::data::{Channel, ForceAxes, ForceHistory, Sampling};
 use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, VehicleState, built_in_vehicle,
 };
 use impactlab_study::VehicleChoice;
 
-use crate::harness::{apply, is_idle, open_with, step_until};
+use crate::harness::{apply, is_forecast, open_with, step_until};
 use crate::pictures::save;
 
 /// A car of the library, of which the network knows no motion.
@@ -82,11 +82,6 @@ fn write_drive(
         std::fs::write(path, forces).expect("a file");
     }
     *x.last().expect("a sample")
-}
-
-fn is_forecast(state: &State) -> bool {
-    let forecast = &state.session.response.forecast;
-    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
 }
 
 /// Ends of the 90 % interval of X at the end of the forecast, m.

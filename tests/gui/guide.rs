@@ -7,7 +7,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use image::{Rgba, RgbaImage, imageops};
 use impactlab::app::{
-    App, Command, Network, Pane, ReconstructionCommand, State, TrainingCommand, VariantCommand,
+    App, Command, Network, Pane, ReconstructionCommand, TrainingCommand, VariantCommand,
 };
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{AtlasFigure, Figure, atlas_figure, sensitivity_figure};
@@ -16,7 +16,7 @@ use impactlab_study::ConfigChoice;
 use impactlab_sweep::Outcome;
 use impactlab_sweep::atlas::Atlas;
 
-use crate::harness::{apply, is_idle, open_at, state, step_until};
+use crate::harness::{apply, is_forecast, is_idle, open_at, state, step_until};
 use crate::pictures::save;
 use crate::settings::SMALL_FORCE;
 
@@ -54,11 +54,6 @@ fn kept(name: &str, image: &RgbaImage) -> RgbaImage {
     let kept = image::open(&path).expect("UPDATE_GUIDE=1 draws it").to_rgba8();
     assert_eq!(kept.dimensions(), image.dimensions(), "{name}: UPDATE_GUIDE=1 draws it anew");
     kept
-}
-
-fn is_forecast(state: &State) -> bool {
-    let forecast = &state.session.response.forecast;
-    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
 }
 
 #[test]

@@ -98,6 +98,12 @@ pub fn is_idle(state: &State) -> bool {
         && !state.session.analysis.is_waiting()
 }
 
+/// Whether the motion of what is idle is forecast as well.
+pub fn is_forecast(state: &State) -> bool {
+    let forecast = &state.session.response.forecast;
+    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
+}
+
 /// Carries out a command as if the user had asked for it.
 pub fn apply(harness: &mut Harness<'_, App>, command: Command) {
     let context = harness.ctx.clone();

@@ -11,16 +11,11 @@ use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet, built_in_veh
 use impactlab_study::VehicleChoice;
 use impactlab_study::case_file::CaseFile;
 
-use crate::harness::{apply, is_idle, open, state, step_until};
+use crate::harness::{apply, is_forecast, is_idle, open, state, step_until};
 use crate::import::choose;
 use crate::pictures::save;
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
-
-fn is_forecast(state: &State) -> bool {
-    let forecast = &state.session.response.forecast;
-    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
-}
 
 /// The sheets of the struck and of the striking vehicle.
 fn sheets(state: &State) -> [DataSheet; 2] {
