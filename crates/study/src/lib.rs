@@ -97,7 +97,7 @@ pub use questions::replay::report::{
     ContactPose, ContactState, ReplayAnswer, ReplayPoint, ReplayReport, ReplaySample, StartPose,
     Travelled, YawRateCheck,
 };
-pub use questions::replay::request::{DEFAULT_REPLAY_DRAWS, RECORDED_SPEED_SHARE, ReplayRequest};
+pub use questions::replay::request::{DEFAULT_REPLAY_DRAWS, ReplayRequest};
 pub use questions::simulate::dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };

@@ -13,7 +13,8 @@ use impactlab_core::ranges::{
 };
 use impactlab_core::units::{NumberFormat, UnitSystem, percent};
 use impactlab_core::vehicle::{DrivenAxle, ROAD_FRICTION_SPREAD, USUAL_STEERING_RATIO};
-use impactlab_study::{DEFAULT_VEHICLE, RECORDED_SPEED_SHARE, ReplayRequest, VehicleChoice};
+use impactlab_reconstruct::evidence::RECORDED_SPEED_SHARE;
+use impactlab_study::{DEFAULT_VEHICLE, ReplayRequest, VehicleChoice};
 
 /// Which event of a file is replayed.
 const EVENT: Range =

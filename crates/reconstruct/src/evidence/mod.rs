@@ -44,7 +44,7 @@ pub use mark::{Mark, MarkKind};
 pub use places::FoundPlace;
 pub use position::VideoPosition;
 pub use prior_ranges::PriorRanges;
-pub use recorder::Edr;
+pub use recorder::{Edr, RECORDED_SPEED_SHARE};
 pub use rest::RestPose;
 pub use road::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Road};
 pub use skid::SkidBefore;

@@ -10,6 +10,9 @@ use crate::Latent;
 use crate::evidence::{Bounds, Field, Fields, Group, Item, Measured, Section, Sigma, Stated, ends};
 use crate::likelihood::{Comparison, SINGLE_DEGREES_OF_FREEDOM, student};
 
+/// Standard deviation of a recorded speed that nobody states, as a share of it.
+pub const RECORDED_SPEED_SHARE: f64 = 0.04;
+
 /// Share of a recorded change of velocity by which it may be wrong (49 CFR 563.8, UN R160).
 const DELTA_V_SHARE: f64 = 0.1;
 
@@ -40,7 +43,7 @@ const SPEED_BEFORE_SIGMA: Sigma = Sigma::share(
     "speed_before_sigma",
     "±",
     SPEED_SIGMA,
-    [0.04, 0.3],
+    [RECORDED_SPEED_SHARE, 0.3],
     "4 %, as stated for early recorders (49 CFR 563 asks for 1 km/h), and at least the rounding of the record",
 );
 const DELTA_V_X: Field = Field::new("delta_v_x", "Δv ahead", SPEED);

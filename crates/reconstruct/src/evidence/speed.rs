@@ -4,6 +4,7 @@ use impactlab_core::ranges::{EVIDENCE_SPEED, EVIDENCE_TIME, SPEED_SIGMA};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::evidence::recorder::RECORDED_SPEED_SHARE;
 use crate::evidence::{Field, Fields, Group, Item, Measured, Section, Sigma, Stated};
 use crate::likelihood::Comparison;
 
@@ -23,7 +24,7 @@ const SIGMA: Sigma = Sigma::share(
     "speed_sigma",
     "±",
     SPEED_SIGMA,
-    [0.04, 0.3],
+    [RECORDED_SPEED_SHARE, 0.3],
     "4 %, as stated for early recorders, and at least the rounding of the record",
 );
 

@@ -32,6 +32,7 @@ use impactlab_core::vehicle::{
     SheetQuantity, SimulationError, SimulationRun, USUAL_STEERING_RATIO, VehicleDraws,
     VehicleParameters, simulate_batch,
 };
+use impactlab_reconstruct::evidence::RECORDED_SPEED_SHARE;
 
 /// Draws where nobody says how many.
 pub const DEFAULT_REPLAY_DRAWS: usize = 400;
@@ -42,9 +43,6 @@ const ASSUMED_RATIO_SIGMA: f64 = 2.0;
 /// Standard deviation of a steering ratio that is stated, as a share of it: ratios vary with the angle, and
 /// steering columns yield.
 const STATED_RATIO_SHARE: f64 = 0.03;
-
-/// Standard deviation of a recorded speed, as a share of it, as in the evidence of a reconstruction.
-pub const RECORDED_SPEED_SHARE: f64 = 0.04;
 
 /// Draws that are computed together.
 const DRAWS_TOGETHER: usize = 64;
