@@ -89,8 +89,7 @@ pub use sine_with_dwell::{
 };
 pub use stability::VehicleMismatch;
 pub use state::{N_ACCELERATION, N_STATE, VehicleState};
-pub use tire::TIRE_WIDTH_RATIO;
-pub use tire::{TireParameters, WheelEffort, WheelSlip};
+pub use tire::{SLIP_ANGLE_SPEED_M_S, TIRE_WIDTH_RATIO, TireParameters, WheelEffort, WheelSlip};
 pub use tire_marks::leaves_mark;
 pub use tire_marks::{
     LARGEST_MARK_GAP_M, MARK_SLIP_RAD, MARK_SPEED_M_S, TireMark, TireMarkKind, TireMarkPoint,

@@ -30,7 +30,7 @@ use crate::vehicle::constants::TireConstants;
 /// Regularisation ε of the slip angle, m/s. Near standstill the lateral force is proportional to
 /// the lateral velocity, which decays at a rate of c g / ε ≈ 400 1/s; the reference step of 1 ms
 /// resolves this.
-pub(super) const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
+pub const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
 
 /// Speed u₀ below which the rolling resistance decreases to zero, m/s.
 pub(super) const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;

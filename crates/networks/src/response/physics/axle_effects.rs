@@ -2,7 +2,9 @@
 
 use crate::response::N_RESIDUAL;
 use impactlab_core::numerics::Lanes;
-use impactlab_core::vehicle::{VehicleEvaluation, VehicleParameters, VehicleState};
+use impactlab_core::vehicle::{
+    SLIP_ANGLE_SPEED_M_S, VehicleEvaluation, VehicleParameters, VehicleState,
+};
 
 /// Slip angles at which the axle characteristic is corrected, rad, on a road of friction μ₀.
 const SLIP_KNOTS_RAD: [f64; 10] = [0.01, 0.025, 0.05, 0.09, 0.15, 0.25, 0.4, 0.6, 0.85, 1.2];
@@ -13,8 +15,6 @@ const KNOT_FRICTION: f64 = 0.8;
 const WHEEL_MASS_SHARES: [f64; 2] = [0.0075, 0.03];
 /// Passes through slip → time constant → slip.
 const SPIN_LAG_PASSES: usize = 4;
-/// Speed below which slip angles fade, m/s, as in the tire model.
-const SLOW_M_S: f64 = 0.5;
 /// Relaxation length σ, m.
 const RELAXATION_LENGTH_M: f64 = 0.1;
 /// Largest side force from relaxation, as a share of the load.
@@ -87,7 +87,7 @@ impl Axle {
         let load_n = loads_n[0] + loads_n[1];
         let u = x.vx_body_m_s;
         let w = x.vy_body_m_s + x.yaw_rate_rad_s * self.arm_m;
-        let slope = w / (u.abs() + SLOW_M_S);
+        let slope = w / (u.abs() + SLIP_ANGLE_SPEED_M_S);
         let slip_rad = -slope.atan();
         let grip_n = load_n * self.friction;
         let mut forces = [load_n; N_PER_AXLE];
@@ -99,7 +99,7 @@ impl Axle {
         }
         let cos = (slope * slope + 1.0).sqrt().recip();
         let sin = slope.abs() * cos;
-        let drag_n = grip_n * (u / SLOW_M_S).smooth_sign() * -0.125;
+        let drag_n = grip_n * (u / SLIP_ANGLE_SPEED_M_S).smooth_sign() * -0.125;
         let [[along, across], [heavy_along, heavy_across]] =
             spin_lags_n([u, w, x.yaw_rate_rad_s], grip_n, self.spun_masses_kg);
         let relaxation_n = self.relaxation_n([u, w, slip_rad], now, load_n);
@@ -172,7 +172,7 @@ impl Axle {
     ) -> T {
         let rate = &now.derivative;
         let across = rate.vy_body_m_s + rate.yaw_rate_rad_s * self.arm_m;
-        let speed_squared = u * u + w * w + SLOW_M_S * SLOW_M_S;
+        let speed_squared = u * u + w * w + SLIP_ANGLE_SPEED_M_S * SLIP_ANGLE_SPEED_M_S;
         let turning = -(across * u.abs() - w * rate.vx_body_m_s * sign(u)) / speed_squared;
         let stiffness = slip_rad * (self.cornering_coefficient / self.friction);
         let flattening = stiffness * stiffness + 1.0;

@@ -2,7 +2,9 @@
 //! of the order of one.
 
 use impactlab_core::numerics::Lanes;
-use impactlab_core::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
+use impactlab_core::vehicle::{
+    SLIP_ANGLE_SPEED_M_S, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState,
+};
 
 /// Numbers of an instant.
 pub const N_FEATURES: usize = 20;
@@ -31,8 +33,6 @@ const TIRE_UNIT_M_S2: f64 = 5.0;
 /// Rates of the velocities in body axes, which a fast rotation makes large.
 const RATE_UNIT_M_S2: f64 = 20.0;
 const ANGULAR_RATE_UNIT_RAD_S2: f64 = 4.0;
-/// Speed below which slip angles fade, m/s, as in the tire model.
-const SLOW_M_S: f64 = 0.5;
 /// Time over which what an impact stirs up (wheels, springs) comes to rest, s.
 const TRANSIENT_S: f64 = 0.2;
 const HORIZON_S: f64 = 4.0;
@@ -68,9 +68,9 @@ pub(crate) fn features_of<T: Lanes>(
     let (rate, [ax, ay]) = (&now.derivative, now.acceleration_body_m_s2);
     let [fx, fy] = now.collision_force_body_n;
     let (mass, geometry) = (&vehicle.mass, &vehicle.geometry);
-    let speed =
-        (x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s + 1e-12).sqrt() + SLOW_M_S;
-    let along = x.vx_body_m_s.abs() + SLOW_M_S;
+    let speed = (x.vx_body_m_s * x.vx_body_m_s + x.vy_body_m_s * x.vy_body_m_s + 1e-12).sqrt()
+        + SLIP_ANGLE_SPEED_M_S;
+    let along = x.vx_body_m_s.abs() + SLIP_ANGLE_SPEED_M_S;
     let front = x.vy_body_m_s + x.yaw_rate_rad_s * geometry.cg_to_front_axle_m;
     let rear = x.vy_body_m_s - x.yaw_rate_rad_s * geometry.cg_to_rear_axle_m;
     [
