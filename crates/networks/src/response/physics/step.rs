@@ -14,11 +14,12 @@ use serde::{Deserialize, Serialize};
 use impactlab_core::numerics::{Lanes, LanesOver, rk4_step, rk4_step_from};
 use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{
-    N_ACCELERATION, N_STATE, VehicleConstants, VehicleInput, VehicleParameters, VehicleState,
+    N_ACCELERATION, N_STATE, OUTPUT_INTERVAL_S, VehicleConstants, VehicleInput, VehicleParameters,
+    VehicleState,
 };
 
-/// Length of a step, s: that of the trajectory data sets.
-pub const STEP_S: f64 = 0.01;
+/// Length of a step, s: the interval of simulated motions and of the trajectory data sets.
+pub const STEP_S: f64 = OUTPUT_INTERVAL_S;
 
 /// Numbers of a residual acceleration: v̇_x, v̇_y in m/s², ṙ, φ̈ in rad/s².
 pub const N_RESIDUAL: usize = N_ACCELERATION;
