@@ -32,7 +32,7 @@ pub use least_squares::{LeastSquares, LeastSquaresProblem, levenberg_marquardt};
 pub use normal::{NORMAL_QUANTILE_95, normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
 pub use packed::{MAX_LANES, Packed};
-pub use plane::{line_length, polygon_area};
+pub use plane::{line_length, polygon_area, polygon_holds};
 pub use rounding::nearest_multiple;
 pub use scalar::{Lanes, LanesOver, Scalar};
 pub use seed::{random_stream, sha256_hex};

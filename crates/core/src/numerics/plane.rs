@@ -27,3 +27,26 @@ pub fn polygon_area(corners: &[[f64; 2]]) -> f64 {
     });
     twice.sum::<f64>().abs() / 2.0
 }
+
+/// Whether a polygon holds a place: a ray from there crosses its sides an odd number of times. Of a place
+/// on a side nothing is promised.
+///
+/// - `corners`: in either sense; the last is joined to the first.
+///
+/// ```
+/// # use impactlab_core::numerics::polygon_holds;
+/// let triangle = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0]];
+/// assert!(polygon_holds(&triangle, [1.0, 1.0]) && !polygon_holds(&triangle, [3.0, 3.0]));
+/// ```
+pub fn polygon_holds(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let Some(mut a) = corners.last() else { return false };
+    let mut holds = false;
+    for b in corners {
+        if (a[1] > y) != (b[1] > y) {
+            let x_at_y = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+            holds ^= x < x_at_y;
+        }
+        a = b;
+    }
+    holds
+}

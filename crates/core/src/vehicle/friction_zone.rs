@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::polygon_area;
+use crate::numerics::{polygon_area, polygon_holds};
 use crate::ranges::{OutOfRange, POSITION, ROAD_FRICTION};
 
 /// Most corners of a border: more than any outline in a plan of a scene has.
@@ -127,17 +127,9 @@ impl FrictionZone {
         Ok(())
     }
 
-    /// Whether the zone holds a place `[X, Y]`, m: a ray from there crosses the border an odd number
-    /// of times. Of a place on the border nothing is promised.
-    pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
-        let mut holds = false;
-        for_each_side(&self.border_m, |a, b| {
-            if (a[1] > y) != (b[1] > y) {
-                let x_at_y = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-                holds ^= x < x_at_y;
-            }
-        });
-        holds
+    /// Whether the zone holds a place `[X, Y]`, m. Of a place on the border nothing is promised.
+    pub fn holds(&self, place_m: [f64; 2]) -> bool {
+        polygon_holds(&self.border_m, place_m)
     }
 
     /// The corners with their numbers from 1, without those that repeat the corner before.
@@ -164,15 +156,6 @@ impl FrictionZone {
 pub fn friction_at(zones: &[FrictionZone], place_m: [f64; 2], elsewhere: f64) -> f64 {
     let zone = zones.iter().rev().find(|zone| zone.holds(place_m));
     zone.map_or(elsewhere, |zone| zone.friction)
-}
-
-/// Calls a function for each side of a polygon, with its two ends.
-fn for_each_side(polygon: &[[f64; 2]], mut visit: impl FnMut([f64; 2], [f64; 2])) {
-    let Some(mut before) = polygon.last().copied() else { return };
-    for &corner in polygon {
-        visit(before, corner);
-        before = corner;
-    }
 }
 
 /// The numbers of the corners at which two sides begin that cross; `None` if no sides do.

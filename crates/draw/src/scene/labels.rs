@@ -10,6 +10,7 @@ use crate::scene::grid::grid_step;
 use crate::scene::measures::{draw_measure, draw_measure_text, measure_text_place};
 use crate::scene::shade::{ground_color, role_color, zone_color};
 use impactlab_core::data::Severity;
+use impactlab_core::numerics::polygon_holds;
 use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::{Language, Quantity};
 use impactlab_document::scene::{AreaKind, CarLook, GroundArea, Scene, SceneRole};
@@ -271,7 +272,7 @@ impl Labels<'_> {
             let ground_m = self.projection.ground_at([f64::from(pixel.x), f64::from(pixel.y)]);
             self.rect.contains_rect(place)
                 && taken.iter().all(|other| !other.intersects(place))
-                && ground_m.is_some_and(|at_m| zone.contains(at_m))
+                && ground_m.is_some_and(|at_m| polygon_holds(&zone.border_m, at_m))
         };
         let along = |n: usize| (0..=n).map(move |i| i as f32 / n as f32);
         let shares = along(PLACES[0]).flat_map(|x| along(PLACES[1]).map(move |y| vec2(x, y)));
