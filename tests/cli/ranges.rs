@@ -105,6 +105,7 @@ fn options_out_of_range_are_wrong_usage() {
     const TRAIN: &str = "train force --data datasets/fea --out m";
     const SCENE: &str = "render scene datasets/trajectories-fea --case FE_c001 --out s.png";
     const IMPACT: &str = "render impact pit-right-rear --out i.png";
+    const PARTICLES: &str = "particles is 3, expected 50 to 100000";
     for (command, option, expected) in [
         (SIMULATE, "--friction=-1", "road friction is -1, expected 0.01 to 2"),
         (SIMULATE, "--friction=1e9", "road friction is 1e9, expected 0.01 to 2"),
@@ -128,6 +129,11 @@ fn options_out_of_range_are_wrong_usage() {
         (IMPACT, "--size=99999x99999", "picture side is 99999, expected 16 to 16384"),
         (IMPACT, "--size=16384x16384", "expected 256 to 4e7"),
         (IMPACT, "--scale=nan", "expected a number"),
+        ("reconstruct evidence.toml", "--particles=3", PARTICLES),
+        ("evaluate reconstruction staged", "--particles=3", PARTICLES),
+        ("report evidence.toml --out r.pdf", "--particles=3", PARTICLES),
+        ("render film evidence.toml --out f.mp4", "--particles=3", PARTICLES),
+        ("evaluate pairs datasets/pairs", "--draws=0", "draws is 0, expected 1 to 10000"),
     ] {
         let args: Vec<&str> = command.split(' ').chain([option]).collect();
         let (code, error) = run(&args);

@@ -6,8 +6,9 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{UnitsArg, Words, one_of};
+use crate::cli::options::{UnitsArg, Words, count, one_of};
 use crate::cli::text::print_answer;
+use impactlab_core::ranges::DRAWS;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluatePairsRequest, PairSplit};
 
@@ -35,7 +36,8 @@ pub(in crate::cli) struct EvaluatePairsArgs {
     #[arg(long, num_args = 1.., value_name = "NAME")]
     only: Vec<String>,
     /// Number of draws of each case
-    #[arg(long, value_name = "N", default_value_t = EvaluatePairsRequest::new("").draws)]
+    #[arg(long, value_name = "N", default_value_t = EvaluatePairsRequest::new("").draws,
+        value_parser = count::<usize>(DRAWS))]
     draws: usize,
     /// Seed of all draws
     #[arg(long, default_value_t = 0)]

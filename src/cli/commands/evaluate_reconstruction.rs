@@ -7,8 +7,9 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
-use crate::cli::options::{OverwriteArg, UnitsArg, Words, one_of};
+use crate::cli::options::{OverwriteArg, UnitsArg, Words, count, one_of};
 use crate::cli::text::print_answer;
+use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
 use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
 
@@ -42,7 +43,8 @@ pub(in crate::cli) struct EvaluateReconstructionArgs {
     #[arg(long, num_args = 1.., value_name = "NAME")]
     only: Vec<String>,
     /// Number of particles
-    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
+    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES,
+        value_parser = count::<usize>(RECONSTRUCTION_PARTICLES))]
     particles: usize,
     /// Seed of all draws
     #[arg(long, default_value_t = 0)]

@@ -13,7 +13,9 @@ use crate::cli::options::{
     CameraKeyArg, OverwriteArg, UnitsArg, VehicleArg, camera_key, count, film_section, number,
     size_px,
 };
-use impactlab_core::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
+use impactlab_core::ranges::{
+    FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE, RECONSTRUCTION_PARTICLES,
+};
 use impactlab_document::scene::{FilmSection, FilmTiming, Scene};
 use impactlab_draw::film::Film;
 use impactlab_draw::scene::{CameraKey, SceneCourse};
@@ -73,7 +75,7 @@ pub(super) struct SampledArgs {
     #[arg(long, value_name = "NAME|FILE")]
     striking: Option<VehicleArg>,
     /// Of evidence: number of particles, as in reconstruct
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(RECONSTRUCTION_PARTICLES))]
     particles: Option<usize>,
     /// Of evidence: seed of all draws
     #[arg(long)]

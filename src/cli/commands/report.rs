@@ -8,8 +8,9 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
-use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Words, one_of};
+use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Words, count, one_of};
 use impactlab_core::data::write_atomically;
+use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
 };
@@ -31,7 +32,7 @@ pub(in crate::cli) struct ReportArgs {
     #[command(flatten)]
     trust: TrustArg,
     /// Of an evidence file: number of particles; a case says it itself
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(RECONSTRUCTION_PARTICLES))]
     particles: Option<usize>,
     /// Of an evidence file: seed of all draws; a case says it itself
     #[arg(long)]

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::options::VehicleArg;
+use crate::cli::options::{VehicleArg, count};
+use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
 /// The evidence, the cars, and with how many particles the speeds are sampled.
@@ -26,7 +27,8 @@ pub(in crate::cli) struct EvidenceArgs {
     #[arg(long)]
     one_contact: bool,
     /// Number of particles
-    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
+    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES,
+        value_parser = count::<usize>(RECONSTRUCTION_PARTICLES))]
     particles: usize,
     /// Seed of all draws
     #[arg(long, default_value_t = 0)]
