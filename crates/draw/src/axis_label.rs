@@ -7,8 +7,8 @@ use egui::{Color32, Rangef, TextStyle, TextWrapMode, Ui, WidgetText, pos2};
 
 use impactlab_document::figure::Axis;
 
-/// By how much of its height a text stands further left than its axis, as egui_plot has it.
-const GAP: f32 = 0.25;
+/// By how much of its height a text stands further away from its axis, as egui_plot has it.
+pub(crate) const GAP: f32 = 0.25;
 
 /// The text beside an upright axis, or what stands before its comma; where that is longer than the plot is
 /// high, its unit alone, as the heading above the plot or the caption below it names the quantity.
