@@ -4,7 +4,7 @@
 use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
-use crate::analysis::{MotionOutcome, PlaceChance, RestOutcome, Sensitivity};
+use crate::analysis::{FEWEST_DRAWS, MotionOutcome, PlaceChance, RestOutcome, Sensitivity};
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
 use crate::{ImpulseRival, PredictMotionReport};
@@ -178,7 +178,8 @@ impl PredictMotionReport {
         self.contacts.is_some() && self.force_applicability.is_some_and(|share| share < 0.5)
     }
 
-    /// Estimates of vehicle and road that the end depends on; none where no vehicles were drawn.
+    /// Estimates of vehicle and road that the end depends on; none where so few vehicles were drawn that one
+    /// of many estimates goes with the end by chance.
     pub(super) fn hinges(&self) -> Option<Value> {
         let named = |share: &&Sensitivity| {
             share.is_clear() && share.position_share.max(share.heading_share) >= NAMED_SHARE
@@ -198,7 +199,7 @@ impl PredictMotionReport {
             true => Value::Term(Term::HingesOnNone),
             false => Value::Joined(all, "; "),
         };
-        (self.n_vehicles > 0).then_some(value)
+        (self.n_vehicles >= FEWEST_DRAWS).then_some(value)
     }
 }
 

@@ -74,6 +74,8 @@ terms! {
     WhatWouldChangeIt: "What would change it?", "Was würde es ändern?";
     NothingDrawn: "not computed: no vehicles and roads were drawn",
         "nicht berechnet: Fahrzeuge und Fahrbahnen wurden nicht gezogen";
+    TooFewDrawn: "not known: too few vehicles and roads were drawn",
+        "nicht bekannt: zu wenige Fahrzeuge und Fahrbahnen wurden gezogen";
     AnswerNumbers: "The answer in numbers", "Die Antwort in Zahlen";
     // The force of the first contact by each method.
     ForceByMethod: "Force of the first contact by each method; in brackets the intervals of 90 %",

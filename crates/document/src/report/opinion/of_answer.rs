@@ -81,6 +81,7 @@ pub(in crate::report) fn opinion_of_forecast(
                 words.no_hinge.to_owned()
             }
             Some(hinges) => fill(words.end_hinges, &[("hinges", &hinges)]),
+            None if report.n_vehicles > 0 => words.too_few_drawn.to_owned(),
             None => words.nothing_drawn.to_owned(),
         }],
     }

@@ -55,6 +55,7 @@ pub(super) struct OpinionWords {
     pub end_hinges: &'static str,
     pub no_hinge: &'static str,
     pub nothing_drawn: &'static str,
+    pub too_few_drawn: &'static str,
     pub several_courses: &'static str,
     pub no_intervals: &'static str,
     pub too_few_to_say: &'static str,
@@ -146,6 +147,7 @@ const EN: OpinionWords = OpinionWords {
         end; the rest is the force, the contact and the drivers.",
     nothing_drawn: "Nothing was drawn that the answer could be seen to depend on; it holds for the values of section \
         3 as they stand.",
+    too_few_drawn: "Too few vehicles and roads were drawn to see what the answer depends on.",
     several_courses: "More than one course of events is possible, each with a speed of its own below; the figures over all \
         of them may be true of none.",
     no_intervals: "The particles allow no intervals.",
@@ -236,6 +238,7 @@ const DE: OpinionWords = OpinionWords {
         am Ende; das Übrige sind Kraft, Kontakt und Fahrer.",
     nothing_drawn: "Es wurde nichts gezogen, woran eine Abhängigkeit zu erkennen wäre; die Antwort gilt für die Werte \
         in Abschnitt 3, so wie sie dort stehen.",
+    too_few_drawn: "Es wurden zu wenige Fahrzeuge und Fahrbahnen gezogen, um zu erkennen, wovon die Antwort abhängt.",
     several_courses: "Mehr als ein Geschehensablauf ist möglich, jeder mit einer eigenen Geschwindigkeit, siehe unten; \
         die Zahlen über alle treffen womöglich auf keinen zu.",
     no_intervals: "Die Ziehungen lassen keine Bereiche zu.",
