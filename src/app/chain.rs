@@ -12,6 +12,7 @@ use crate::app::state::{State, Subject};
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem, percent};
+use impactlab_document::report::without_options;
 use impactlab_draw::theme;
 use impactlab_study::{Answer, SimulateReport};
 
@@ -207,8 +208,10 @@ fn outcome_link(
 /// The sentences of the caveats that warn.
 fn warnings(caveats: Option<&Caveats>, units: UnitSystem) -> Vec<String> {
     let warnings = caveats.into_iter().flatten().filter(|caveat| caveat.is_warning());
-    let told =
-        |caveat: &Caveat| format!("{}: {}", caveat.kind.label(), caveat.in_units(units).text);
+    let told = |caveat: &Caveat| {
+        let text = without_options(&caveat.in_units(units).text);
+        format!("{}: {text}", caveat.kind.label())
+    };
     warnings.map(told).collect()
 }
 

@@ -3,6 +3,7 @@
 use egui::{CollapsingHeader, Grid, Label, Response, RichText, Ui};
 use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use impactlab_core::units::UnitSystem;
+use impactlab_document::report::without_options;
 
 use crate::app::command::Command;
 use crate::app::panes::Pane;
@@ -88,7 +89,7 @@ fn table_ui(
     let id = ("assumptions", ui.next_auto_id());
     Grid::new(id).num_columns(4).striped(true).show(ui, |ui| {
         for assumption in assumptions {
-            let reason = assumption.reason.as_deref().unwrap_or_default();
+            let reason = &reason(assumption);
             cell_ui(ui, NAME_WIDTH, RichText::new(name(assumption)).italics());
             let value = cell_ui(ui, width, RichText::new(&assumption.text));
             if has_reasons {
@@ -110,6 +111,12 @@ fn table_ui(
 fn name(assumption: &Caveat) -> String {
     let kind = assumption.kind.label();
     assumption.subject.map_or(kind.to_owned(), |subject| format!("{kind}: {}", subject.label()))
+}
+
+/// Why it is assumed. How another value is given, the button beside it says; an option of the command line does
+/// not.
+fn reason(assumption: &Caveat) -> String {
+    without_options(assumption.reason.as_deref().unwrap_or_default())
 }
 
 /// Draws a text in a cell of a grid, which it does not widen.
@@ -143,4 +150,17 @@ fn place(subject: CaveatSubject) -> Place {
         | CaveatSubject::Start
         | CaveatSubject::Wheels => return None,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// “another one: --vehicle” stood beside the button that sets it.
+    #[test]
+    fn no_option_of_the_command_line_stands_in_the_window() {
+        let why = "no vehicle was named; another one: --vehicle";
+        let assumption = Caveat::assumed(CaveatSubject::Vehicle, "reference-2000", why);
+        assert_eq!(reason(&assumption), "no vehicle was named");
+    }
 }

@@ -7,6 +7,7 @@ use crate::app::looks::{self, Icon};
 use crate::app::widgets::assumptions_ui;
 use impactlab_core::uncertainty::{Caveat, CaveatQuantity, Caveats};
 use impactlab_core::units::{NumberFormat, UnitSystem, three_digits};
+use impactlab_document::report::without_options;
 use impactlab_draw::theme;
 
 /// Opacity of the fill of a chip, 0 to 1.
@@ -66,7 +67,8 @@ fn chip_ui(ui: &mut Ui, caveat: &Caveat, units: UnitSystem) {
             ui.add(Label::new(text).selectable(false).truncate());
         });
     });
-    chip.response.interact(Sense::hover()).on_hover_text(caveat.in_units(units).text);
+    let text = without_options(&caveat.in_units(units).text);
+    chip.response.interact(Sense::hover()).on_hover_text(text);
 }
 
 /// What a chip says: kind, quantity and value.

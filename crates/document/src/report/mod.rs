@@ -65,6 +65,7 @@ pub use document::{
     Block, Column, InputClass, Picture, PictureContent, ReportDocument, Section, SectionKind, Table,
 };
 pub use impactlab_core::units::Language;
+pub use numbers::without_options;
 pub use opinion::variant_differences;
 pub use settings::{DateError, Paper, ReportDate, ReportSettings};
 pub use write::{

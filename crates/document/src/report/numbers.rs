@@ -185,7 +185,7 @@ const WORDS_OF_OPTION: usize = 3;
 
 /// A sentence without the options of the command line and the keys of files that it names: in brackets, behind
 /// a colon, or as a clause of its own.
-fn without_options(text: &str) -> String {
+pub fn without_options(text: &str) -> String {
     let text = without_brackets(&without_brackets(text, " (--"), " ([");
     let named_before = |part: &str| {
         let (named, _) = part.split_once(": --").or_else(|| part.split_once(": ["))?;
