@@ -365,3 +365,28 @@ fn at_the_first_start_no_case_is_chosen_and_the_window_says_what_to_do() {
     let figure = state(&harness).chain().into_iter().next().and_then(|link| link.figure);
     assert_eq!(figure.as_deref(), Some("PIT, right rear quarter"));
 }
+
+/// A log without the forward speed was said to have no recorded motion, beside two empty plots.
+#[test]
+fn a_log_that_cannot_be_simulated_says_why_and_has_no_empty_plots() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("log.csv");
+    let row = |i: i32| {
+        let time_s = 0.1 * f64::from(i);
+        format!("{time_s:.1},{:.2},0.00,10.00,0.000", 10.0 * time_s)
+    };
+    let rows: Vec<String> = (0..60).map(row).collect();
+    let header = "time_s,x_m,y_m,speed_m_s,yaw_rate_rad_s";
+    std::fs::write(&path, format!("{header}\n{}\n", rows.join("\n"))).expect("a file");
+    let mut harness = open(&[path.to_str().expect("a plain name")]);
+    step_until(&mut harness, "the log", shows("log"));
+    apply(&mut harness, Command::Show(Pane::Comparison));
+    harness.run_steps(4);
+    for text in ["the file has no column vx_m_s (v_x)", "There is no simulation that could be"] {
+        assert!(harness.query_by_label_contains(text).is_some(), "{text}");
+    }
+    apply(&mut harness, Command::Show(Pane::Motion));
+    harness.run_steps(4);
+    assert!(harness.query_by_label("v_x").is_none(), "an empty plot");
+    assert!(harness.query_by_label_contains("Yaw rate").is_some());
+}

@@ -78,6 +78,9 @@ fn case_ui(
         facts_ui(ui, &report.name, &[rival.table()], units);
     }
     match &report.error {
+        None if report.end.is_none() => {
+            drop(ui.weak("There is no simulation that could be compared with what was recorded."));
+        }
         Some(error) => drop(Grid::new("case error").striped(true).show(ui, |ui| {
             for (label, text) in error_rows(error, units) {
                 value_row(ui, &label, &text);

@@ -66,13 +66,15 @@ fn plots_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, plots: &mut MotionPlots) {
         units,
     };
     plots.update(source, &session.sources);
-    let first = view.motion_channels.first();
     let channels = view.motion_channels.iter().zip(&plots.channels);
+    // What was neither recorded nor simulated has no plot.
+    let channels = channels.filter(|(_, figure)| !figure.elements.is_empty());
     let channels: Vec<Plot<'_>> = channels
-        .map(|(channel, figure)| Plot {
+        .enumerate()
+        .map(|(idx, (channel, figure))| Plot {
             heading: analysis_readout(analysis, *channel, time_s, units),
             figure,
-            legend: first == Some(channel),
+            legend: idx == 0,
         })
         .collect();
     let controls = plots.controls.iter();
@@ -110,6 +112,9 @@ fn plots_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, plots: &mut MotionPlots) {
         }
     };
     egui::ScrollArea::vertical().show(ui, |ui| {
+        if channels.is_empty() {
+            ui.weak("None of these curves was recorded or simulated: choose others under Curves.");
+        }
         rows_ui(ui, &channels);
         let heading = match (controls.is_empty(), analysis.simulation.is_some()) {
             (false, _) => ui.strong("What drivers and systems do").on_hover_text(ABOUT_CONTROLS),

@@ -77,7 +77,11 @@ pub fn analyse_recording(
     let duration_s = file.series.time_s().last().copied().unwrap_or(0.0);
     let (initial, simulation) = match (initial_state(&file.series), &load) {
         (Err(SeriesError::Missing { channel }), _) => {
-            notes.push(format!("not simulated: column {} is missing", channel.header()));
+            let (header, label) = (channel.header(), channel.label());
+            notes.push(format!(
+                "not simulated: the file has no column {header} ({label}); a simulation starts from place, \
+                 heading, velocity and yaw rate of the first row"
+            ));
             (None, None)
         }
         (Err(error), _) => return Err(error.into()),

@@ -516,6 +516,11 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("cases that it was trained on", "Fälle, mit denen es trainiert wurde"),
     ("vehicles drawn from the data sheet", "aus dem Datenblatt gezogene Fahrzeuge"),
     ("roll angle", "Wankwinkel"),
+    ("not simulated: the file records no force", "nicht simuliert: die Datei enthält keine Kraft"),
+    (
+        "a simulation starts from place, heading, velocity and yaw rate of the first row",
+        "eine Simulation beginnt mit Lage, Gierwinkel, Geschwindigkeit und Gierrate der ersten Zeile",
+    ),
     ("courses of events", "Geschehensabläufe"),
     ("temperature", "Temperatur"),
     ("effective sample size", "effektiver Stichprobenumfang"),
@@ -903,6 +908,10 @@ pub(super) const TEMPLATES: &[(&str, &str)] = &[
     ("half-sine of {}", "Halbsinus über {}"),
     ("triangle of {}", "Dreieck über {}"),
     ("square of {}", "Rechteck über {}"),
+    (
+        "not simulated: the file has no column {} ({})",
+        "nicht simuliert: der Datei fehlt die Spalte {} ({})",
+    ),
 ];
 
 /// Names that the program gives where nobody gave one, without the numbers behind them, and those of the scenarios
