@@ -15,7 +15,7 @@ use crate::app::source::{Content, Source};
 use crate::app::widgets::{quantity_field, within_view};
 use impactlab_core::data::FileKind;
 use impactlab_core::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
 use impactlab_study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S, Drive, SeriesFile};
 
@@ -136,7 +136,8 @@ fn ratio_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
 fn speed_ui(ui: &mut Ui, start: &mut Drive, begins_m_s: Option<[f64; 2]>, units: UnitSystem) {
     let label = "Speed before impact";
     let Some(speed_m_s) = &mut start.speed_m_s else {
-        let shown = |speed_m_s: f64| Quantity::Speed.shown(speed_m_s, units);
+        let format = NumberFormat::english(units);
+        let shown = |speed_m_s: f64| format.rounded(Quantity::Speed, speed_m_s);
         let (speed_m_s, vy_m_s, text) = match begins_m_s {
             Some([vx, vy]) => (vx, Some(vy), format!("{}, as the file begins", shown(vx))),
             None => (ASSUMED_SPEED_M_S, None, shown(ASSUMED_SPEED_M_S)),
@@ -157,14 +158,27 @@ fn speed_ui(ui: &mut Ui, start: &mut Drive, begins_m_s: Option<[f64; 2]>, units:
     }
 }
 
+/// Where a force acts, seen from the CG.
+fn contact_in_words(contact: &ContactPoint, units: UnitSystem) -> String {
+    let ContactPoint { x_body_m, y_body_m, height_m } = *contact;
+    let format = NumberFormat::english(units);
+    let length = |m: f64| format.rounded(Quantity::Length, m);
+    let along = if x_body_m < 0.0 { "behind" } else { "ahead of" };
+    let side = if y_body_m < 0.0 { "right" } else { "left" };
+    format!(
+        "{} {along} the CG, {} to the {side}, {} above the ground",
+        length(x_body_m.abs()),
+        length(y_body_m.abs()),
+        length(height_m)
+    )
+}
+
 /// Draws the contact point, at which the force acts, if the user has set it, otherwise the point
 /// that is assumed.
 fn contact_ui(ui: &mut Ui, start: &mut Drive, units: UnitSystem) {
     let Some(ContactPoint { x_body_m, y_body_m, height_m }) = &mut start.contact else {
-        let ContactPoint { x_body_m, y_body_m, height_m } = ASSUMED_CONTACT;
-        let [x, y, z] = [x_body_m, y_body_m, height_m].map(|m| Quantity::Length.shown(m, units));
-        let assumed =
-            format!("{x} ahead, {y} left, {z} high; a yaw moment in the file counts first");
+        let place = contact_in_words(&ASSUMED_CONTACT, units);
+        let assumed = format!("{place}; a yaw moment in the file takes precedence");
         if assumed_ui(ui, "Contact point", &assumed) {
             start.contact = Some(ASSUMED_CONTACT);
         }
@@ -212,6 +226,13 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     use super::*;
+
+    /// “-1.500 m ahead, -0.9000 m left, 0.5200 m high” was told of a place behind and to the right.
+    #[test]
+    fn the_assumed_contact_is_told_as_one_says_where_something_is() {
+        let told = contact_in_words(&ASSUMED_CONTACT, UnitSystem::Si);
+        assert_eq!(told, "1.5 m behind the CG, 0.9 m to the right, 0.52 m above the ground");
+    }
 
     #[test]
     fn a_velocity_taken_from_a_file_goes_with_the_speed_but_not_one_that_was_stated() {
