@@ -294,7 +294,7 @@ terms! {
     LongContact: "probability of contact for more than 0.3 s",
         "Wahrscheinlichkeit eines Kontakts von mehr als 0,3 s", "All phases of contact together";
     MeetAgainByImpact: "cars meet again, as the impact alone moves them",
-        "Fahrzeuge treffen sich wieder, vom Stoß allein bewegt";
+        "erneuter Kontakt der Fahrzeuge, bewegt allein durch den Stoß";
     MeetAgain: "probability that they part and meet again",
         "Wahrscheinlichkeit, dass sie sich trennen und wieder treffen";
     TimeInContact: "time in contact", "Zeit im Kontakt", "All phases of contact together";

@@ -408,7 +408,7 @@ pub(super) const WORDS: Words = Words {
     measured_on: "gemessen am",
     table_reconstruction: "Anteil der wahren Werte in den Intervallen, % (Grenzen von 95 % Sicherheit), und Fehler; alles bekannt. Andere Rechnungen: Fälle beider Hälften, deren Finite-Elemente-Rechnung nicht zu denen gehört, an die die Annahme über Stoßziffer und Reibung angepasst ist",
     table_without_recorder: "Dasselbe ohne den Unfalldatenspeicher",
-    table_rest_alone: "Dasselbe allein mit Endlagen, Schaden, Massen und Reibwert",
+    table_rest_alone: "Dasselbe allein mit Endlagen, Schaden, Massen und Reibbeiwert",
     validation_sheet: "Die Regeln tragen die Streuung der Fahrzeuge, aus denen sie stammen; sie steht bei jedem \
         Schätzwert.",
     no_methods: "Keine Antwort stammt aus einem Modell.",

@@ -191,8 +191,8 @@ const DE: OpinionWords = OpinionWords {
     in_no_draw: "in keiner Ziehung",
     how_sure: "Wie sicher die Antwort ist",
     not_counted: "Für Antworten dieser Art wurde nicht gezählt, wie oft ihre Bereiche zutrafen.",
-    counted_of_others: "Wie oft Bereiche bei der Erprobung zutrafen, sagt nichts über eine Antwort aus, die solche \
-        Warnungen trägt.",
+    counted_of_others: "Wie oft Bereiche bei der Erprobung zutrafen, sagt nichts über eine Antwort aus, für die solche \
+        Warnungen gelten.",
     counted_inside: "Der Fall liegt außerhalb des Gültigkeitsbereichs (Abschnitt 6); für solche Fälle wurde nicht eigens \
         gezählt.",
     known_error: "Die Bereiche wurden an berechneten Zusammenstößen geprüft, deren Ausgang bekannt war; die bekannten \
@@ -241,7 +241,7 @@ const DE: OpinionWords = OpinionWords {
     too_few_drawn: "Es wurden zu wenige Fahrzeuge und Fahrbahnen gezogen, um zu erkennen, wovon die Antwort abhängt.",
     several_courses: "Mehr als ein Geschehensablauf ist möglich, jeder mit einer eigenen Geschwindigkeit, siehe unten; \
         die Zahlen über alle treffen womöglich auf keinen zu.",
-    no_intervals: "Die Ziehungen lassen keine Bereiche zu.",
+    no_intervals: "Für Bereiche reichen die Ziehungen nicht aus.",
     too_few_to_say: "Die Ziehungen lassen keine Aussage darüber zu, wovon die Geschwindigkeiten abhängen.",
     at_medians: "Mit jeder Eingangsgröße in ihrem Median:",
     over_draws: "über die gezogenen Fahrzeuge",
