@@ -130,15 +130,20 @@ impl State {
     /// if there is none, that of all sources. Data that the program opened by itself lie beside: which case
     /// is looked at is the user's choice. If no open data set is listed, the first one is.
     fn select_something(&mut self) {
-        let sources = &self.session.sources;
-        if !sources.iter().all(Source::is_settled) {
-            return;
+        let Session { sources, select_when_loaded, .. } = &self.session;
+        let are_settled = sources.iter().all(Source::is_settled);
+        let opened = |source: &&Source| Some(&source.opened) == select_when_loaded.as_ref();
+        let is_there = sources.iter().any(|source| opened(&source));
+        // It does not wait for data that were opened before, such as those that come with the program.
+        if are_settled || (is_there && sources.iter().filter(opened).all(Source::is_settled)) {
+            let first = first_subject(sources.iter().filter(opened));
+            self.session.select_when_loaded = None;
+            if let Some(subject) = first {
+                self.offer(subject);
+            }
         }
-        let wanted = self.session.select_when_loaded.take();
-        let opened = |source: &&Source| Some(&source.opened) == wanted.as_ref();
-        let first = first_subject(sources.iter().filter(opened));
-        if let Some(subject) = first {
-            self.offer(subject);
+        if !are_settled {
+            return;
         }
         // Data of another case are not taken into one that was opened.
         let Session { sources, opened_at_start, .. } = &self.session;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Output, Pane, ReplayStatus, State};
+use impactlab::app::{App, Command, Output, Pane, ReplayStatus, Source, State, Subject};
 use impactlab_core::collision::ContactLocation;
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
@@ -366,11 +366,9 @@ fn at_the_first_start_no_case_is_chosen_and_the_window_says_what_to_do() {
     assert_eq!(figure.as_deref(), Some("PIT, right rear quarter"));
 }
 
-/// A log without the forward speed was said to have no recorded motion, beside two empty plots.
-#[test]
-fn a_log_that_cannot_be_simulated_says_why_and_has_no_empty_plots() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("log.csv");
+/// Writes a log without a forward speed into a folder.
+fn log_in(folder: &Path) -> PathBuf {
+    let path = folder.join("log.csv");
     let row = |i: i32| {
         let time_s = 0.1 * f64::from(i);
         format!("{time_s:.1},{:.2},0.00,10.00,0.000", 10.0 * time_s)
@@ -378,6 +376,29 @@ fn a_log_that_cannot_be_simulated_says_why_and_has_no_empty_plots() {
     let rows: Vec<String> = (0..60).map(row).collect();
     let header = "time_s,x_m,y_m,speed_m_s,yaw_rate_rad_s";
     std::fs::write(&path, format!("{header}\n{}\n", rows.join("\n"))).expect("a file");
+    path
+}
+
+/// “Working…” stood there until all data that come with the program had been read.
+#[test]
+fn a_file_that_is_opened_is_shown_while_other_data_are_being_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = log_in(folder.path());
+    let mut harness = open(&[]);
+    let never = Source::loading(folder.path().join("large"), None);
+    harness.state_mut().state_mut().session.sources.push(never);
+    apply(&mut harness, Command::Open(vec![path.clone()]));
+    step_until(&mut harness, "the log", |state| {
+        state.project.subject() == Some(Subject::File(path.clone()))
+    });
+    assert!(!state(&harness).session.sources.iter().all(Source::is_settled));
+}
+
+/// A log without the forward speed was said to have no recorded motion, beside two empty plots.
+#[test]
+fn a_log_that_cannot_be_simulated_says_why_and_has_no_empty_plots() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = log_in(folder.path());
     let mut harness = open(&[path.to_str().expect("a plain name")]);
     step_until(&mut harness, "the log", shows("log"));
     apply(&mut harness, Command::Show(Pane::Comparison));
