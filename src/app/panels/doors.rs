@@ -35,8 +35,8 @@ const DOORS: [Door; 3] = [
     Door {
         icon: Icon::CarFront,
         title: "What happens if …",
-        text: "Two cars, a PIT at 54 km/h, ready to play. Change speeds, angle, cars and brakes, and \
-               see where the struck car goes and how sure that is.",
+        text: "Two cars in a PIT, ready to play. Change speeds, angle, cars and brakes, and see where \
+               the struck car goes and how sure that is.",
         button: "Set up a collision",
         commands: || vec![Command::Case(CaseCommand::Leave(Leaving::Pit))],
     },
@@ -51,8 +51,8 @@ const DOORS: [Door; 3] = [
     Door {
         icon: Icon::FolderOpen,
         title: "Open my data",
-        text: "Force curves, trajectories, driving logs: CSV, text or Excel. Every file is shown with \
-               its units before it is read. You can also drop files here.",
+        text: "Force curves, trajectories, driving logs: CSV, text or Excel. What a file leaves \
+               open, such as a unit, is asked before it is read. You can also drop files here.",
         button: "Choose files…",
         commands: || vec![Command::ShowWorkspace(Workspace::Data), Command::Ask(Purpose::Files)],
     },
