@@ -49,7 +49,9 @@ pub(in crate::report) fn opinion_of_forecast(
             let share = format.percent(rest.share_at_rest);
             let limit = format.given(Quantity::Time, rest.limit_s);
             let distance = format.drawn_in_words(Quantity::Length, &rest.distance_m);
-            let values = [("share", &*share), ("limit", &*limit), ("distance", &*distance)];
+            let n = rest.n_draws.to_string();
+            let values =
+                [("share", &*share), ("n", &*n), ("limit", &*limit), ("distance", &*distance)];
             if rest.is_nearly_all_at_rest() {
                 sentences.push(fill(words.comes_to_rest, &values));
             } else {

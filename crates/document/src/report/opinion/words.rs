@@ -135,8 +135,8 @@ const EN: OpinionWords = OpinionWords {
         more with a probability of {half}.",
     turns_of_courses: "Courses of events are told apart by the largest turn on the way, the other probabilities of a turn are those \
         at the end.",
-    comes_to_rest: "It comes to rest within {limit} in {share} of the draws, after a path of {distance}.",
-    partly_at_rest: "It comes to rest within {limit} in {share} of the draws; until then, or until it is followed no \
+    comes_to_rest: "It comes to rest within {limit} in {share} of the {n} draws, after a path of {distance}.",
+    partly_at_rest: "It comes to rest within {limit} in {share} of the {n} draws; until then, or until it is followed no \
         further, it covers {distance}.",
     lower_bounds: "Since less than 95 % of the draws come to rest in that time, upper ends of times and distances are \
         lower bounds.",
@@ -225,9 +225,9 @@ const DE: OpinionWords = OpinionWords {
         einer Wahrscheinlichkeit von {half} um 180° oder mehr.",
     turns_of_courses: "Die Geschehensabläufe sind nach der größten Drehung während der Bewegung unterschieden, die übrigen \
         Wahrscheinlichkeiten einer Drehung gelten für das Ende.",
-    partly_at_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand; bis dahin, oder bis es nicht \
+    partly_at_rest: "Es kommt in {share} der {n} Ziehungen innerhalb von {limit} zum Stillstand; bis dahin, oder bis es nicht \
         weiter verfolgt wird, legt es {distance} zurück.",
-    comes_to_rest: "Es kommt in {share} der Ziehungen innerhalb von {limit} zum Stillstand, nach einem Weg von \
+    comes_to_rest: "Es kommt in {share} der {n} Ziehungen innerhalb von {limit} zum Stillstand, nach einem Weg von \
         {distance}.",
     lower_bounds: "Da in dieser Zeit weniger als 95 % der Ziehungen zum Stillstand kommen, sind die oberen Enden von \
         Zeiten und Wegen untere Schranken.",
@@ -261,3 +261,18 @@ const DE: OpinionWords = OpinionWords {
     car_hinges: "{name}, soweit die Spuren dies offenlassen: Geschwindigkeit des Fahrzeugs {speed}.",
     share_hinges: "{name}: {place} der Varianz des Endorts, {heading} der des Endwinkels.",
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// “in 97.5 % of the draws” did not say how many these were.
+    #[test]
+    fn a_share_of_draws_is_told_with_their_number() {
+        for words in [Language::En, Language::De].map(opinion_words) {
+            for template in [words.comes_to_rest, words.partly_at_rest] {
+                assert!(template.contains("{share}") && template.contains("{n}"), "{template}");
+            }
+        }
+    }
+}
