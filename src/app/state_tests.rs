@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use crate::app::force::collision_of;
 use crate::app::state::*;
 use crate::app::{
-    Command, Measure, Measurement, Measuring, Pane, Source, VariantCommand, Workspace, Workspaces,
+    Command, Dialog, Measure, Measurement, Measuring, Output, Pane, Source, VariantCommand,
+    Workspace, Workspaces,
 };
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::Severity;
@@ -185,4 +186,14 @@ fn a_variant_that_cannot_be_shown_leaves_nothing_of_another_in_the_forms() {
     assert_eq!(state.project.subject(), None);
     assert!(state.session.messages.iter().any(|of| of.text.contains("cannot be shown")));
     assert_eq!(state.case.with_shown(&state.project).variant("bad"), Some(&bad));
+}
+
+/// A case that was dropped onto the window while it asked whether to replace a file was saved over that.
+#[test]
+fn a_file_of_one_case_is_not_replaced_by_the_next() {
+    let mut state = State::default();
+    let path = PathBuf::from("first.impactlab");
+    state.session.dialogs.open(Dialog::Replace(Output::Case, path));
+    state.new_case();
+    assert!(!state.session.dialogs.is_any_open());
 }

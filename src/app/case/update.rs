@@ -265,6 +265,10 @@ impl State {
         session.scene.measuring = Measuring::default();
         session.between = BetweenCursors::default();
         session.other_variants.clear();
+        // What they would write is of the case before, or under a name that was meant for it.
+        let writes =
+            |of: &Dialog| matches!(of, Dialog::Film(_) | Dialog::Replace(..) | Dialog::Path(_));
+        session.dialogs.close_if(writes);
     }
 
     /// Begins a case with nothing in it.
