@@ -1,15 +1,16 @@
 //! What of the state is stored between runs.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use crate::app::force::collision_of;
 use crate::app::state::*;
 use crate::app::{
-    Command, Dialog, Measure, Measurement, Measuring, Output, Pane, Source, VariantCommand,
-    Workspace, Workspaces,
+    Command, Dialog, Measure, Measurement, Measuring, Output, Pane, Source, TaskKey,
+    VariantCommand, Workspace, Workspaces,
 };
 use impactlab_core::collision::ChannelClass;
-use impactlab_core::data::Severity;
+use impactlab_core::data::{Existing, Severity};
 use impactlab_core::units::UnitSystem;
 use impactlab_study::ModelChoice;
 use impactlab_study::case_file::Variant;
@@ -196,4 +197,27 @@ fn a_file_of_one_case_is_not_replaced_by_the_next() {
     state.session.dialogs.open(Dialog::Replace(Output::Case, path));
     state.new_case();
     assert!(!state.session.dialogs.is_any_open());
+}
+
+/// The case that was opened while another was being written got the file of that, and was saved over it.
+#[test]
+fn a_case_that_is_written_while_another_is_opened_keeps_its_file_to_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("first.impactlab");
+    let mut state = State::default();
+    state.save_case(path.clone(), Existing::Replace);
+    state.new_case();
+    let context = egui::Context::default();
+    for _ in 0..2000 {
+        for command in state.session.tasks.poll() {
+            state.apply(command, &context);
+        }
+        if !state.session.tasks.is_running(&TaskKey::SaveCase) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(path.exists());
+    assert_eq!(state.case.path, None);
+    assert_eq!(state.view.recent, [path]);
 }

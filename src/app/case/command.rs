@@ -75,4 +75,6 @@ pub struct SavedCase {
     pub(super) reach: Reach,
     /// What the case holds.
     pub(super) fingerprint: String,
+    /// Which of the cases of the window it is, by `Session::n_cases`.
+    pub(super) n_cases: u64,
 }

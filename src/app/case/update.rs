@@ -261,6 +261,7 @@ impl State {
         let session = &mut self.session;
         session.n_cases += 1;
         session.tasks.stop(&TaskKey::Report);
+        session.tasks.stop(&TaskKey::FileDialog);
         session.report = ReportSession::default();
         session.scene.measuring = Measuring::default();
         session.between = BetweenCursors::default();
@@ -382,7 +383,7 @@ impl State {
         if self.case.path.as_ref() != Some(&path) {
             file.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
-        let fingerprint = super::fingerprint_of(&file);
+        let (fingerprint, n_cases) = (super::fingerprint_of(&file), self.session.n_cases);
         file.note("saved");
         let write = move |_: &mut ProgressCallback<'_>| {
             file.record_files();
@@ -390,7 +391,7 @@ impl State {
             let on_disk = file.to_text(&path).map_err(|error| error_chain(&error))?;
             file.save(&path, existing).map_err(|error| error_chain(&error))?;
             let reach = file.reach(&path);
-            Ok(Found::new(SavedCase { file, path, on_disk, reach, fingerprint }))
+            Ok(Found::new(SavedCase { file, path, on_disk, reach, fingerprint, n_cases }))
         };
         self.session
             .tasks
@@ -423,7 +424,13 @@ impl State {
     /// Receives the case that was written. What was changed since is not in its file.
     pub(in crate::app) fn take_saved_case(&mut self, written: Result<Found<SavedCase>, String>) {
         match written.map(Found::take) {
-            Ok(SavedCase { file, path, on_disk, reach, fingerprint }) => {
+            // Another case was opened meanwhile, whose file it is not.
+            Ok(SavedCase { path, reach, n_cases, .. }) if n_cases != self.session.n_cases => {
+                self.trust_own(path.clone(), reach);
+                self.say(Severity::Info, format!("{} written", path.display()));
+                self.remember_case(path);
+            }
+            Ok(SavedCase { file, path, on_disk, reach, fingerprint, .. }) => {
                 self.trust_own(path.clone(), reach);
                 let case = &mut self.case;
                 case.file.name = file.name;
