@@ -4,7 +4,8 @@
 use crate::ranges::{
     BODY_WIDTH, BRAKE_RISE, CONTROL_TIME, CRUSH_DEPTH, ENGINE_BRAKING, EVIDENCE_POSITION,
     EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_LIMIT, REACTION_TIME, ROAD_CROSS_SLOPE, ROAD_FRICTION,
-    ROAD_GRADE, Range, SKID_LENGTH, SPEED, STEERING_RATIO, STEERING_WHEEL_ANGLE, YAW_RATE,
+    ROAD_GRADE, ROLLING_RESISTANCE, Range, SKID_LENGTH, SPEED, STEERING_RATIO,
+    STEERING_WHEEL_ANGLE, YAW_RATE,
 };
 use crate::units::{Phrase, PhraseValue, Unit};
 
@@ -18,7 +19,7 @@ type Usual = (Range, [f64; 2], f64);
 
 /// A driver brakes seconds after a contact; the fastest road cars reach 120 m/s, and collisions are below 70 m/s; racing
 /// tires reach a friction of 1.3 on asphalt; car drivers turn the steering wheel by two turns.
-const USUAL: [Usual; 18] = [
+const USUAL: [Usual; 19] = [
     (CONTROL_TIME, [0.0, 60.0], 1e-3),
     (BRAKE_RISE, [0.0, 5.0], 0.0),
     (REACTION_TIME, [0.0, 10.0], 1e-3),
@@ -31,6 +32,7 @@ const USUAL: [Usual; 18] = [
     (ROAD_GRADE, [-0.3, 0.3], 2e-3),
     (ROAD_CROSS_SLOPE, [-0.3, 0.3], 2e-3),
     (FRICTION_LIMIT, [0.0, 3.0], 0.0),
+    (ROLLING_RESISTANCE, [0.0, 0.15], 0.0),
     (BODY_WIDTH, [0.0, 3.5], 0.0),
     (EVIDENCE_SPEED, [0.0, 70.0], 0.0),
     (EVIDENCE_POSITION, [-500.0, 500.0], 0.0),

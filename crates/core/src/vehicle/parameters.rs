@@ -17,6 +17,7 @@ use crate::ranges::{
     SLIDING_FRICTION_RATIO, SPRUNG_MASS, TRACK_WIDTH, VEHICLE_MASS, VEHICLE_YAW_INERTIA,
     WHEEL_INERTIA,
 };
+use crate::units::Phrase;
 use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::tire::{TireParameters, WHEEL_MASS_SHARE};
 use crate::vehicle::{
@@ -258,6 +259,12 @@ impl VehicleParameters {
         }
         self.check_relations()
             .map_err(|VehicleMismatch { key, value, expected }| refused(key, value, &expected))
+    }
+
+    /// The values that are hardly meant in their unit, in words.
+    pub fn odd_numbers(&self) -> Vec<Phrase> {
+        let numbers = self.ranges().into_iter();
+        numbers.filter_map(|(key, value, range)| range.odd(key, value)).collect()
     }
 
     /// Every value with its range, which other values of the vehicle may limit further.

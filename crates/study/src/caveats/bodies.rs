@@ -49,7 +49,7 @@ fn odd_numbers(scenario: &Scenario) -> impl Iterator<Item = Caveat> {
     })
 }
 
-/// What the data sheet of a vehicle states and no car of its other figures has.
+/// What the data sheet of a vehicle states and no car of its other figures has, and what is hardly meant in its unit.
 ///
 /// - `subject`: which vehicle of the question it is.
 pub(crate) fn unusual(
@@ -80,7 +80,7 @@ pub(crate) fn unusual_phrases(vehicle: &VehicleParameters) -> Vec<Phrase> {
         .with(PhraseValue::three_digits(unit, by_rule))
     };
     let unusual = vehicle.sheet.as_ref().map_or_else(Vec::new, |sheet| sheet.unusual());
-    unusual.iter().map(phrase).collect()
+    unusual.iter().map(phrase).chain(vehicle.odd_numbers()).collect()
 }
 
 /// A vehicle in words, and as what an answer is about.
@@ -224,6 +224,15 @@ mod tests {
         assert!(found[0].is_warning() && found[0].subject == Some(CaveatSubject::Striking));
         let words = "my car: mass 680 kg, where a car of its other figures has about 1574 kg;";
         assert!(found[0].text.starts_with(words), "{}", found[0]);
+    }
+
+    #[test]
+    fn a_vehicle_whose_friction_no_road_has_is_named() {
+        let mut vehicle = built_in_vehicle("toyota-corolla-2020").unwrap();
+        vehicle.tires.friction = 1.9;
+        let found: Vec<Caveat> = unusual(&vehicle, CaveatSubject::Vehicle).collect();
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].text.starts_with("tires.friction is 1.9, and of"), "{}", found[0]);
     }
 
     #[test]

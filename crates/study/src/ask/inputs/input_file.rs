@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use crate::case_file::CaseFile;
-use crate::caveats::bodies::unusual_phrases;
+use crate::caveats::bodies::{doubtful, unusual_phrases};
 use crate::questions::reconstruct::assumed::unused;
 use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
@@ -230,7 +230,11 @@ impl InputFile {
             }
             Self::Vehicle(vehicle) => Ok(said(&unusual_phrases(vehicle))),
             Self::Evidence(evidence) => {
-                Ok(said(&[evidence.odd_sigmas(), evidence.odd_drags()].concat()))
+                let odd = [evidence.odd_sigmas(), evidence.odd_drags(), evidence.odd_numbers()];
+                Ok(said(&odd.concat()))
+            }
+            Self::Scenario(scenario) => {
+                Ok(doubtful(scenario).into_iter().map(|caveat| caveat.text).collect())
             }
             Self::Network(kind) => Ok(vec![kind.clone()]),
             Self::Pairs(records) => pairs_contents(records, kind),
