@@ -23,8 +23,17 @@ const QUATERNIONS: [[&str; 4]; 4] = [
 ];
 
 /// Headers of a course over ground, which is clockwise from north.
-const COURSES: [&str; 7] =
-    ["course", "courseoverground", "cog", "gpscourse", "trackangle", "kurs", "kursübergrund"];
+const COURSES: [&str; 9] = [
+    "course",
+    "courseoverground",
+    "cog",
+    "gpscourse",
+    "bearing",
+    "trackangle",
+    "angletrack",
+    "kurs",
+    "kursübergrund",
+];
 
 /// Ends of headers of a ROS message with a pose, in SI units (REP 103) unless they say others, with their
 /// channels; those of a twist are of `nav_msgs/Odometry`, whose twist is in the axes of the vehicle.

@@ -9,7 +9,7 @@ use crate::data::{Channel, ColumnUse, Note, Table, Term, clock};
 use crate::units::{Quantity, Unit};
 
 /// Names of stamps and of clocks, in letters and digits.
-const STAMPS: [&str; 16] = [
+const STAMPS: [&str; 19] = [
     "timestamp",
     "stamp",
     "timestamputc",
@@ -23,6 +23,9 @@ const STAMPS: [&str; 16] = [
     "timeutc",
     "datetime",
     "timeofday",
+    "gpstime",
+    "devicetime",
+    "elapsedtime",
     "uhrzeit",
     "zeitstempel",
     "datumuhrzeit",
@@ -91,7 +94,8 @@ fn stamp(table: &Table) -> Option<(ColumnUse, Option<Note>)> {
         if (is_time || in_key.is_some()) && of_day() {
             return Some((column(Quantity::Time.si_unit()), None));
         }
-        let stated = stated_unit(name, table.unit_text(idx), Quantity::Time).ok()?;
+        // A row of units may call it `unix time`.
+        let stated = stated_unit(name, table.unit_text(idx), Quantity::Time).ok().flatten();
         if let Some(unit) = stated.or(in_key?) {
             return Some((column(unit), None));
         }
@@ -160,6 +164,13 @@ mod tests {
                 0.25,
                 false,
             ),
+            (
+                "Device Time",
+                ["30-Nov-2026 12:00:00.00", "30-Nov-2026 12:00:00.25", "30-Nov-2026 12:00:00.50"],
+                0.25,
+                false,
+            ),
+            ("elapsed_time [ms]", ["0", "250", "500"], 0.25, false),
             ("Time (UTC)", ["11:59:59.75", "12:00:00.00", "12:00:00.25"], 0.25, false),
             ("Uhrzeit", ["23:59:59.75", "00:00:00.00", "00:00:00.25"], 0.25, false),
             ("hour,minute,second", ["23,59,59.75", "0,0,0.00", "0,0,0.25"], 0.25, false),
@@ -176,6 +187,18 @@ mod tests {
             assert_eq!(is_said, is_told, "{header}: {said:?}");
             assert!(!said.iter().any(|note| note.contains("is left out")), "{header}: {said:?}");
         }
+    }
+
+    /// Apps that record with telephones write such a row of units.
+    #[test]
+    fn a_row_of_units_may_say_what_a_stamp_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let text =
+            "timestamp,x,y,speed\nunix time,m,m,m/s\n1764500000.0,0,0,20\n1764500000.5,10,0,20\n";
+        std::fs::write(&path, text).unwrap();
+        let time_s = read_any_series(&path, None).unwrap().series.time_s().to_vec();
+        assert!((time_s[1] - time_s[0] - 0.5).abs() < 1e-6, "{time_s:?}");
     }
 
     /// Numbers of a stamp may be in any unit, and 75 is no minute.
