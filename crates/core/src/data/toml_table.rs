@@ -123,7 +123,7 @@ impl<'a> TomlTable<'a> {
             let ends = value
                 .get_ref()
                 .as_array()
-                .map(|ends| ends.iter().map(|end| self.in_range(&key, end, unit, range)).collect());
+                .map(|ends| ends.iter().map(|end| self.in_range(base, end, unit, range)).collect());
             let ends: Option<Vec<f64>> = ends.transpose()?;
             let Some(&[low, high]) =
                 ends.as_deref().filter(|ends| ends.len() == 2 && ends[0] < ends[1])
@@ -262,7 +262,7 @@ impl<'a> TomlTable<'a> {
             let Some((_, value)) = self.take(&key) else {
                 continue;
             };
-            let si = self.in_range(&key, value, unit, range)?;
+            let si = self.in_range(base, value, unit, range)?;
             if let Some((other, _)) = found {
                 return Err(self.conflict(&other));
             }
@@ -387,16 +387,23 @@ impl<'a> TomlTable<'a> {
         Some((found.span().start, value))
     }
 
+    /// - `base`: the key without its unit.
     fn in_range(
         &self,
-        key: &str,
+        base: &str,
         value: &Spanned<DeValue<'_>>,
         unit: &Unit,
         range: &Range,
     ) -> Result<f64, TomlError> {
-        let si = parse_number(value.get_ref()).map(|number| unit.to_si(number));
-        si.and_then(|si| range.rounded_into(si))
-            .ok_or_else(|| self.bad_value(key, value, range.expected(unit)))
+        let number = parse_number(value.get_ref());
+        let si = number.and_then(|number| range.rounded_into(unit.to_si(number)));
+        si.ok_or_else(|| {
+            let others = number.map(|number| other_keys(base, number, unit, range));
+            let asked = others.filter(|keys| !keys.is_empty()).map(|keys| keys.join(" or "));
+            let asked = asked.map_or_else(String::new, |keys| format!("; is it {keys}?"));
+            let expected = format!("{}{asked}", range.expected(unit));
+            self.bad_value(&key_with_unit(base, unit), value, expected)
+        })
     }
 
     fn bad_value(&self, key: &str, value: &Spanned<DeValue<'_>>, expected: String) -> TomlError {
@@ -416,6 +423,19 @@ impl<'a> TomlTable<'a> {
     fn full(&self, key: &str) -> Box<str> {
         if self.name.is_empty() { key.into() } else { format!("{}.{key}", self.name).into() }
     }
+}
+
+/// Number of keys that a message offers.
+const OFFERED: usize = 3;
+
+/// The keys with which a number would lie in its range, which it does not in its unit.
+fn other_keys(base: &str, number: f64, unit: &Unit, range: &Range) -> Vec<String> {
+    let fits =
+        |other: &&Unit| *other != unit && other.is_guessed() && range.contains(other.to_si(number));
+    let units = range.quantity.units().iter().filter(fits).take(OFFERED);
+    // What counts something, or is in a unit of no quantity, has no other.
+    let has_units = range.unit() == range.quantity.si_unit().symbol && !range.is_whole;
+    units.filter(|_| has_units).map(|other| key_with_unit(base, other)).collect()
 }
 
 /// The name of a key: `speed` in km/h is `speed_km_h`, `yaw_inertia` in kg m² is

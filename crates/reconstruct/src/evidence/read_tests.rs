@@ -103,6 +103,11 @@ fn a_file_is_read_with_units_and_defaults() {
 fn an_error_names_file_line_key_and_what_is_expected() {
     for (good, bad, expected) in [
         ("friction = 0.72", "friction = 3", "4: road.friction is 3, expected 0.01 to 2"),
+        (
+            "friction = 0.72",
+            "friction = 70",
+            "4: road.friction is 70, expected 0.01 to 2; is it friction_percent?",
+        ),
         ("mass_sigma_kg = 30", "mass_sigma_kg = 0", "8: struck_car.mass_sigma_kg is 0, expected"),
         ("x_m = 41.2", "x_m = 5000", "22: rest.x_m is 5000, expected -2000 to 2000"),
         ("heading_deg = 170", "heading_deg = 170\nheading_sigma_rad = 0", "25: rest.heading_sigma"),
@@ -126,6 +131,11 @@ fn an_error_names_file_line_key_and_what_is_expected() {
         ("y_max_m_s = 1.3", "y_max_m_s = 0.3", "38: edr.delta_v_y_max_m_s is 0.3, expected"),
         ("delta_v_y_max_m_s = 1.3", "", "36: edr.delta_v_y_max_m_s is missing"),
         ("ends_s = 0.25", "ends_s = 0", "41: edr.ends_s is 0, expected 0.005 to 5 s"),
+        (
+            "ends_s = 0.25",
+            "ends_s = 250",
+            "41: edr.ends_s is 250, expected 0.005 to 5 s; is it ends_ms?",
+        ),
         ("time_s = 1.2", "", "43: position[0].time_s is missing"),
         ("[18, 180]", "[180, 18]", "49: prior.target_speed_km_h is [180, 18], expected the low"),
         ("[18, 180]", "[18, 1800]", "49: prior.target_speed_km_h is 1800, expected 0 to 540"),
