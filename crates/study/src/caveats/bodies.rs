@@ -36,7 +36,7 @@ pub(crate) fn doubtful(scenario: &Scenario) -> Vec<Caveat> {
 
 /// Numbers of the file that are hardly meant in their units. A wall is as wide as it is.
 fn odd_numbers(scenario: &Scenario) -> impl Iterator<Item = Caveat> {
-    let is_fixed = scenario.striking.fixed.is_some();
+    let is_fixed = scenario.striking.fixed.is_some() || scenario.striking.mass_kg >= BARRIER_KG;
     scenario.ranges().into_iter().filter_map(move |(key, value, range)| {
         let is_striking = key.starts_with("bullet");
         let text = range.odd(&key, value).filter(|_| !(is_fixed && key.starts_with("bullet.")))?;
