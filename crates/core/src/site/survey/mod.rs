@@ -11,6 +11,7 @@
 //! `kerb`, `friction_zone`); an area with a property `friction` is a zone of friction; what is called a
 //! kerb is one; the rest are lines and points.
 
+mod doubts;
 mod found;
 
 mod features;

@@ -15,6 +15,7 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord};
 
 use crate::ranges::SURVEY_COORDINATE;
+use crate::site::survey::doubts::doubts;
 use crate::site::survey::found::{Found, Thing, kept_text, name_and_unit, wrong};
 use crate::site::{LengthUnit, MapShape, SiteError, SurveyOptions};
 
@@ -158,6 +159,7 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
     for line in found.things.iter_mut().filter(|thing| thing.shape == MapShape::Line) {
         line.at.dedup();
     }
+    found.notes.extend(doubts(&found.things));
     Ok(found)
 }
 
