@@ -176,7 +176,7 @@ fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
         (Quantity::Time, "ss" | "sek") => "s",
         (Quantity::Time, "millis" | "mss") => "ms",
         (Quantity::Time, "minute" | "minutes" | "mins") => "min",
-        (Quantity::Time, "hr" | "hrs" | "hour" | "hours" | "std") => "h",
+        (Quantity::Time, "hr" | "hrs" | "hour" | "hours") => "h",
         (Quantity::Length, "meter" | "metre" | "meters" | "metres") => "m",
         (Quantity::Length, "foot" | "feet") => "ft",
         (Quantity::Length, "inch" | "inches") => "in",
@@ -415,7 +415,7 @@ mod tests {
             let expected = Meaning::WrongUnit(channel, unit.to_owned());
             assert_eq!(meaning(header), expected, "{header}");
         }
-        for header in ["case", "v", "p_kpa", "wheel slip", "", "°", "x1", "ratio [-]"] {
+        for header in ["case", "v", "p_kpa", "wheel slip", "", "°", "x1", "x_std", "ratio [-]"] {
             assert_eq!(meaning(header), Meaning::Unknown, "{header}");
         }
     }
