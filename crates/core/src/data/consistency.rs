@@ -212,7 +212,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     use super::*;
-    use crate::data::course::offset_note;
+    use crate::data::course::{backwards_note, offset_note};
     use crate::numerics::wrap_angle_rad;
 
     /// A bend of 40 m radius at 15 m/s, driven with the heading along the path.
@@ -309,8 +309,12 @@ mod tests {
             let side = if quarter > 0.0 { "90 deg to the left" } else { "90 deg to the right" };
             assert!(found[0].to_string().contains(side), "{}", found[0]);
         }
-        // A car that drives backwards along the bend, and one that drifts along it.
+        // A car that drives backwards along the bend, which is faster than a car does so, and one that drifts along it.
         assert_eq!(changed(Channel::Yaw, |yaw| yaw + PI), []);
+        let reversed = bend(|of, value| if of == Channel::Yaw { value + PI } else { value });
+        let note = backwards_note(&reversed).expect("a remark").to_string();
+        assert!(note.contains("at 15 m/s") && note.contains("yaw_offset=180:deg"), "{note}");
+        assert_eq!(backwards_note(&bend(|_, value| value)), None);
         assert_eq!(changed(Channel::Yaw, |yaw| yaw + 0.7), []);
         let drift = bend(|of, value| if of == Channel::Yaw { value + 0.7 } else { value });
         let note = offset_note(&drift).expect("a remark").to_string();

@@ -30,6 +30,9 @@ const LEAST_OFF_RAD: f64 = 0.5;
 /// rolls along its heading.
 const SLIDING_M_S2: f64 = 1.0;
 
+/// Mean speed above which no car drives backwards, m/s: the reverse gear ends at about 45 km/h.
+const FASTEST_BACKWARDS_M_S: f64 = 12.5;
+
 /// What the course of a path says of the yaw angle.
 pub(super) enum OfCourse {
     /// It contradicts it.
@@ -179,6 +182,28 @@ pub(super) fn offset_note(series: &TimeSeries) -> Option<Note> {
              or the angle is counted from another axis (map yaw_offset={:.0}:deg)",
             to_a_side(angle_rad),
             -angle_rad.to_degrees()
+        ),
+    })
+}
+
+/// That a vehicle drives backwards all along and faster than cars do: its yaw angle may be that of its rear. A forward
+/// velocity says itself which way it drives.
+pub(super) fn backwards_note(series: &TimeSeries) -> Option<Note> {
+    if series.get(Channel::Vx).is_some() || held_positions(series).is_some() {
+        return None;
+    }
+    let pairs = courses(series)?.pairs;
+    let is_backwards =
+        |(course, yaw): &(f64, f64)| wrap_angle_rad(yaw - course).abs() > PI - LEAST_OFF_RAD;
+    let [x, y] = [series.get(Channel::X)?, series.get(Channel::Y)?];
+    let steps = x.windows(2).zip(y.windows(2));
+    let way_m: f64 = steps.map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0])).sum();
+    let speed_m_s = way_m / (series.time_s().last()? - series.time_s().first()?);
+    let is_all = pairs.len() >= N_WINDOWS / 4 && pairs.iter().all(is_backwards);
+    (is_all && speed_m_s > FASTEST_BACKWARDS_M_S).then(|| Note::Doubt {
+        text: format!(
+            "the vehicle drives backwards all along, at {speed_m_s:.0} m/s on average: if it drives forwards, map \
+             yaw_offset=180:deg"
         ),
     })
 }

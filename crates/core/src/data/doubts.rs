@@ -28,6 +28,7 @@ pub(super) fn of_numbers(
     let all = [
         degrees(by_channel, series),
         course::offset_note(series),
+        course::backwards_note(series),
         course::yaw_rate_note(series),
         path_speed::note(table, by_channel, series),
         steering::note(by_channel, map, series),
