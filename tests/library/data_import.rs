@@ -179,11 +179,21 @@ fn a_sheet_is_chosen_and_an_error_names_its_cell() {
 }
 
 #[test]
-fn a_date_is_not_read_as_a_number() {
-    let style = r#"<styleSheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><cellXfs><xf numFmtId="0"/><xf numFmtId="21" applyNumberFormat="1"/></cellXfs></styleSheet>"#;
-    let rows = r#"<row r="1"><c r="A1" t="inlineStr"><is><t>t [s]</t></is></c><c r="B1" t="inlineStr"><is><t>fx [N]</t></is></c><c r="C1" t="inlineStr"><is><t>fy [N]</t></is></c></row><row r="2"><c r="A2" s="1"><v>0.5</v></c><c r="B2"><v>1</v></c><c r="C2"><v>1</v></c></row>"#;
+fn a_date_is_a_time_and_not_read_as_a_number() {
+    let styles = r#"<styleSheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><cellXfs><xf numFmtId="0"/><xf numFmtId="21" applyNumberFormat="1"/></cellXfs></styleSheet>"#;
+    let head = r#"<row r="1"><c r="A1" t="inlineStr"><is><t>t [s]</t></is></c><c r="B1" t="inlineStr"><is><t>fx [N]</t></is></c><c r="C1" t="inlineStr"><is><t>fy [N]</t></is></c></row>"#;
+    // Quarters of a second, in days, and the force is a number or a date.
+    let row = |number: u32, style: &str| {
+        let days = 46_000.5 + f64::from(number) * 0.25 / 86_400.0;
+        format!(
+            r#"<row r="{number}"><c r="A{number}" s="1"><v>{days}</v></c><c r="B{number}"{style}><v>1</v></c><c r="C{number}"><v>1</v></c></row>"#
+        )
+    };
     let main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
-    let sheet = format!(r#"<worksheet xmlns="{main}"><sheetData>{rows}</sheetData></worksheet>"#);
+    let sheet = |style: &str| {
+        let rows: String = (2..6).map(|number| row(number, style)).collect();
+        format!(r#"<worksheet xmlns="{main}"><sheetData>{head}{rows}</sheetData></worksheet>"#)
+    };
     let relations = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     let book = format!(
         r#"<workbook xmlns="{main}" xmlns:r="{relations}"><sheets><sheet name="S" sheetId="1" r:id="rId1"/></sheets></workbook>"#
@@ -192,17 +202,26 @@ fn a_date_is_not_read_as_a_number() {
         r#"<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Id="rId1" Type="{relations}/worksheet" Target="worksheets/sheet1.xml"/><Relationship Id="rId2" Type="{relations}/styles" Target="styles.xml"/></Relationships>"#
     );
     let folder = tempfile::tempdir().unwrap();
-    let parts = [
-        ("xl/worksheets/sheet1.xml", sheet.as_str()),
-        ("xl/workbook.xml", &book),
-        ("xl/_rels/workbook.xml.rels", &links),
-        ("xl/styles.xml", style),
-        LINKS,
-    ];
-    let path = file(folder.path(), "f.xlsx", archive(&parts));
-    let error = read_any_series(&path, Some(&"header=1".parse().unwrap())).unwrap_err();
-    // Half a day is no half second.
-    assert!(!error.to_string().contains("is \"0.5\""), "{error}");
+    let read = |style: &str| {
+        let text = sheet(style);
+        let parts = [
+            ("xl/worksheets/sheet1.xml", text.as_str()),
+            ("xl/workbook.xml", &book),
+            ("xl/_rels/workbook.xml.rels", &links),
+            ("xl/styles.xml", styles),
+            LINKS,
+        ];
+        let path = file(folder.path(), "f.xlsx", archive(&parts));
+        read_any_series(&path, Some(&"header=1".parse().unwrap()))
+    };
+    let loaded = read("").unwrap();
+    let time_s = loaded.series.time_s();
+    for pair in time_s.windows(2) {
+        assert!((pair[1] - pair[0] - 0.25).abs() < 1e-5, "{time_s:?}");
+    }
+    // A day is no newton.
+    let error = read(r#" s="1""#).unwrap_err();
+    assert!(error.to_string().contains("date or time of day"), "{error}");
     assert!(matches!(error, DataError::InSheet { .. }), "{error}");
 }
 

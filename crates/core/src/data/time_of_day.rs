@@ -1,13 +1,14 @@
 //! Times of day, such as `12:59:59.9`, `12:59:59 PM` or `2026-11-25T12:59:59.9+01:00`.
 
 use crate::data::Table;
+use crate::data::workbook::days_of;
 
 pub(super) const HOUR_S: f64 = 3600.0;
 pub(super) const DAY_S: f64 = 86_400.0;
 /// Half of a day, after which a clock of twelve hours begins again.
 const HALF_S: f64 = DAY_S / 2.0;
 
-/// The times of day in a column, such as `12:59:59.9`, in seconds. With a date they count from the midnight before
+/// The times of day in a column, such as `12:59:59.9` or those of a workbook, in seconds. With a date they count from the midnight before
 /// the first one; without, they go on over midnight, and over the hour where no hours are given. `None` if the first
 /// cell is no such time.
 ///
@@ -15,6 +16,11 @@ const HALF_S: f64 = DAY_S / 2.0;
 /// The index of the first row that holds something else, or another date that cannot be read.
 pub(super) fn times_of_day_s(table: &Table, column_idx: usize) -> Option<Result<Vec<f64>, usize>> {
     let cell = |row_idx: usize| table.cell(row_idx, column_idx);
+    if let Some(first) = days_of(&cell(0)) {
+        let since_midnight_s = |days: f64| DAY_S * (days - first.floor());
+        let time_s = |row_idx| days_of(&cell(row_idx)).map(since_midnight_s).ok_or(row_idx);
+        return Some((0..table.n_rows()).map(time_s).collect());
+    }
     Stamp::read(&cell(0))?;
     let stamp = |row_idx| Stamp::read(&cell(row_idx)).ok_or(row_idx);
     let stamps: Result<Vec<Stamp>, usize> = (0..table.n_rows()).map(stamp).collect();

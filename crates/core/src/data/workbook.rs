@@ -249,6 +249,15 @@ fn sheet_text(
     Ok(Text { text, encoding: "Excel workbook" })
 }
 
+/// What the text of a cell with a date or a time of day begins with.
+const DATE: &str = "date or time of day";
+
+/// The days in the text of a cell with a date or a time of day; `None` of any other.
+pub(super) fn days_of(cell: &str) -> Option<f64> {
+    let days = cell.strip_prefix(DATE)?.strip_prefix(" (")?.strip_suffix(" days)")?;
+    days.parse().ok().filter(|days: &f64| days.is_finite())
+}
+
 /// The text of a cell in one line. What is no number must not look like one: a date is a number of
 /// days in the file.
 fn shown(value: &DataRef<'_>) -> String {
@@ -259,7 +268,7 @@ fn shown(value: &DataRef<'_>) -> String {
         DataRef::String(text) => quoted(text),
         DataRef::SharedString(text) => quoted(text),
         DataRef::Bool(value) => value.to_string(),
-        DataRef::DateTime(days) => format!("date or time of day ({} days)", days.as_f64()),
+        DataRef::DateTime(days) => format!("{DATE} ({} days)", days.as_f64()),
         DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => quoted(text),
         DataRef::Error(error) => error_text(error),
     }
