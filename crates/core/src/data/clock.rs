@@ -125,6 +125,35 @@ pub(super) fn go_on(time_s: &mut [f64]) -> Option<Note> {
     Some(Note::GoesOn { period_s, n_turns })
 }
 
+/// Turns times of day that are written as one number, `120059.95` for 12:00:59.95, into seconds. They are known by the steps
+/// over a minute, which are 40 s too long as seconds and usual as times of day.
+///
+/// - `time_s`: as it stands in the file, without a shift, s;
+/// - returns the remark on it if it was changed.
+pub(super) fn from_digits(time_s: &mut [f64]) -> Option<Note> {
+    let of_day_s = |number: f64| {
+        let [hours, minutes] = [(number / 1e4).floor(), (number / 100.0).floor() % 100.0];
+        let seconds = number % 100.0;
+        let is_time = (0.0..24e4).contains(&number) && minutes < 60.0 && seconds < 60.0;
+        is_time.then_some(HOUR_S * hours + 60.0 * minutes + seconds)
+    };
+    let times_s: Vec<f64> = time_s.iter().map(|number| of_day_s(*number)).collect::<Option<_>>()?;
+    let steps = |times_s: &[f64]| -> Vec<f64> {
+        let steps = times_s.windows(2).map(|pair| pair[1] - pair[0]);
+        let mut steps: Vec<f64> = steps.filter(|step_s| *step_s > 0.0).collect();
+        steps.sort_by(f64::total_cmp);
+        steps
+    };
+    let (as_seconds, as_times) = (steps(time_s), steps(&times_s));
+    let longest_s = LONGEST_STEP * quantile_of_sorted(&as_times, 0.5)?;
+    let is_known = *as_seconds.last()? > longest_s.max(40.0) && *as_times.last()? <= longest_s;
+    is_known.then(|| {
+        time_s.copy_from_slice(&times_s);
+        let text = "the time is written as hours, minutes and seconds in one number, hhmmss; it is read so";
+        Note::Format { text: text.to_owned() }
+    })
+}
+
 /// How far the first instant of a second record may lie from that of the first one, as a share of its duration.
 const AGAIN_SHARE: f64 = 0.1;
 
@@ -293,6 +322,31 @@ mod tests {
         }
         for number in [0.0, -1.7e18, 5e8, 9e9, 1e30, f64::NAN] {
             assert_eq!(unit_since_1970(number), None, "{number}");
+        }
+    }
+
+    #[test]
+    fn times_of_day_in_one_number_are_known_by_their_minutes() {
+        let number = |at_s: f64| {
+            let [hours, minutes] = [(at_s / HOUR_S).floor(), (at_s / 60.0).floor() % 60.0];
+            1e4 * hours + 100.0 * minutes + at_s % 60.0
+        };
+        for (begin_s, step_s) in [(43_190.0, 0.5), (3599.0, 0.25), (50.0, 1.0)] {
+            let at_s = |i: u32| begin_s + step_s * f64::from(i);
+            let mut time_s: Vec<f64> = (0..100).map(|i| number(at_s(i))).collect();
+            assert!(from_digits(&mut time_s).is_some(), "{begin_s}");
+            for (i, time_s) in (0..100).zip(&time_s) {
+                assert!((time_s - at_s(i)).abs() < 1e-6, "{i}: {time_s}");
+            }
+        }
+        // Seconds, seconds with a gap, and times of day within one minute, which are seconds as well.
+        let seconds: Vec<f64> = (0..100).map(|i| 0.5 * f64::from(i)).collect();
+        let gap: Vec<f64> = seconds.iter().map(|t| if *t > 20.0 { t + 37.0 } else { *t }).collect();
+        let minute: Vec<f64> = seconds.iter().map(|t| 120_000.0 + t).collect();
+        for mut time_s in [seconds, gap, minute] {
+            let before = time_s.clone();
+            assert_eq!(from_digits(&mut time_s), None, "{before:?}");
+            assert_eq!(time_s, before);
         }
     }
 

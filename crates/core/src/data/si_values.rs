@@ -24,7 +24,8 @@ pub(super) fn instants_s(
     let shift_s = settings.time_shift_s.unwrap_or(0.0);
     let mut in_file_s = time_s.clone();
     in_file_s.iter_mut().for_each(|at_s| *at_s -= shift_s);
-    let note = clock::go_on(&mut in_file_s);
+    let in_digits = clock::from_digits(&mut in_file_s);
+    let note = clock::go_on(&mut in_file_s).or(in_digits);
     if note.is_some() {
         time_s = in_file_s.into_iter().map(|at_s| at_s + shift_s).collect();
     }
