@@ -2,10 +2,10 @@
 //! milliseconds, metres that are feet, metres per second that are kilometres per hour.
 
 use crate::ranges::{
-    BODY_WIDTH, BRAKE_RISE, CONTROL_TIME, CRUSH_DEPTH, ENGINE_BRAKING, EVIDENCE_POSITION,
-    EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_LIMIT, REACTION_TIME, ROAD_CROSS_SLOPE, ROAD_FRICTION,
-    ROAD_GRADE, ROLLING_RESISTANCE, Range, SKID_LENGTH, SPEED, STEERING_RATIO,
-    STEERING_WHEEL_ANGLE, YAW_RATE,
+    BODY_WIDTH, BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, CRUSH_DEPTH, DRAG_SHARE, ENGINE_BRAKING,
+    EVIDENCE_POSITION, EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_LIMIT, REACTION_TIME, RESTITUTION,
+    ROAD_CROSS_SLOPE, ROAD_FRICTION, ROAD_GRADE, ROLLING_RESISTANCE, Range, SKID_LENGTH, SPEED,
+    STEERING_RATIO, STEERING_WHEEL_ANGLE, YAW_RATE,
 };
 use crate::units::{Phrase, PhraseValue, Unit};
 
@@ -18,8 +18,9 @@ const LEAST_SHARE: f64 = 0.005;
 type Usual = (Range, [f64; 2], f64);
 
 /// A driver brakes seconds after a contact; the fastest road cars reach 120 m/s, and collisions are below 70 m/s; racing
-/// tires reach a friction of 1.3 on asphalt; car drivers turn the steering wheel by two turns.
-const USUAL: [Usual; 19] = [
+/// tires reach a friction of 1.3 on asphalt; car drivers turn the steering wheel by two turns, and before a collision cars
+/// turn slower than in a spin.
+const USUAL: [Usual; 22] = [
     (CONTROL_TIME, [0.0, 60.0], 1e-3),
     (BRAKE_RISE, [0.0, 5.0], 0.0),
     (REACTION_TIME, [0.0, 10.0], 1e-3),
@@ -27,7 +28,10 @@ const USUAL: [Usual; 19] = [
     (STEERING_WHEEL_ANGLE, [-15.0, 15.0], 0.0),
     (STEERING_RATIO, [5.0, 35.0], 0.0),
     (SPEED, [-70.0, 70.0], 0.0),
-    (YAW_RATE, [-12.0, 12.0], 0.0),
+    (YAW_RATE, [-6.0, 6.0], 0.0),
+    (BRAKE_SHARE, [0.0, 3.0], 0.02),
+    (DRAG_SHARE, [0.0, 3.0], 0.02),
+    (RESTITUTION, [0.0, 1.0], 3e-3),
     (ROAD_FRICTION, [0.04, 1.3], 0.0),
     (ROAD_GRADE, [-0.3, 0.3], 2e-3),
     (ROAD_CROSS_SLOPE, [-0.3, 0.3], 2e-3),
@@ -116,6 +120,11 @@ mod tests {
                 ROAD_FRICTION,
                 1.9,
                 "key is 1.9, and of collisions 0.04 to 1.3 is usual: check the number and its unit",
+            ),
+            (
+                BRAKE_SHARE,
+                0.008,
+                "key is 0.008, which is next to nothing: is it in another unit, or a number of per cent?",
             ),
             (
                 ROAD_GRADE,

@@ -68,10 +68,10 @@ impl Fields for OfItem<'_> {
         }
     }
 
+    /// The end that is larger in size; the other one may be next to nothing.
     fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
-        let ends = bounds.iter().flatten().flatten();
-        let odd: Option<f64> = ends.copied().find(|end| field.range.odd("", *end).is_some());
-        if let Some(end) = odd {
+        let ends = bounds.iter().flatten().flatten().copied();
+        if let Some(end) = ends.max_by(|a: &f64, b: &f64| a.abs().total_cmp(&b.abs())) {
             self.judge(field, end);
         }
     }
