@@ -81,11 +81,11 @@ impl Range {
         let text = match named.is_empty() {
             true => Phrase::new(
                 "{0} is {1}, and of collisions {2} to {3} is usual: check the number and its unit",
-                "{0} ist {1}, üblich sind {2} bis {3}: Zahl und Einheit prüfen",
+                "{0} ist {1}, bei Kollisionen üblich sind {2} bis {3}: Zahl und Einheit prüfen",
             ),
             false => Phrase::new(
                 "{0} is {1}, and of collisions {2} to {3} is usual: is it in {4}?",
-                "{0} ist {1}, üblich sind {2} bis {3}: Vielleicht ist sie in {4} angegeben",
+                "{0} ist {1}, bei Kollisionen üblich sind {2} bis {3}: vielleicht in {4} gemeint",
             ),
         };
         let text = said(text).with(number(low).bare()).with(number(high));
