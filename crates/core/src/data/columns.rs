@@ -96,7 +96,9 @@ impl Columns {
         }
         columns.guess_others(table, map)?;
         columns.check_siblings(table, map)?;
-        let assumed = columns.by_channel.values().filter(|column| !column.unit_is_stated);
+        let is_assumed =
+            |column: &&ColumnUse| !column.unit_is_stated && !time_columns::is_of_day(table, column);
+        let assumed = columns.by_channel.values().filter(is_assumed);
         let assumed: Vec<Note> = assumed.cloned().map(Note::UnitAssumed).collect();
         columns.notes.splice(0..0, assumed);
         columns.notes.extend(columns.mixed_units());

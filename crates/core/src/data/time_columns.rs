@@ -4,7 +4,7 @@
 use crate::data::columns::{column_use, stated_unit};
 use crate::data::error::quoted;
 use crate::data::spelling::{self, Meaning, letters_and_digits};
-use crate::data::time_of_day::times_of_day_s;
+use crate::data::time_of_day::is_time_of_day;
 use crate::data::{Channel, ColumnUse, Note, Table, Term, clock};
 use crate::units::{Quantity, Unit};
 
@@ -54,6 +54,12 @@ pub(super) fn found(table: &Table, has_time: bool) -> Option<(ColumnUse, Option<
     plain.or_else(|| if has_time { None } else { stamp(table) })
 }
 
+/// Whether a column has times of day or dates, which have no unit to be named.
+pub(super) fn is_of_day(table: &Table, column: &ColumnUse) -> bool {
+    let idx = column.number.checked_sub(1);
+    column.channel == Channel::Time && idx.is_some_and(|idx| is_time_of_day(table, idx))
+}
+
 /// The time of hours, minutes and seconds in a column each, perhaps with one of milliseconds.
 fn parts_of_day(table: &Table) -> Option<ColumnUse> {
     let keys: Vec<String> = table.header().iter().map(|name| bare_key(name)).collect();
@@ -86,12 +92,11 @@ fn parts_of_day(table: &Table) -> Option<ColumnUse> {
 /// The time of a stamp: of the day, or a number in a unit that is stated or that follows from its size.
 fn stamp(table: &Table) -> Option<(ColumnUse, Option<Note>)> {
     let of_column = |(idx, name): (usize, &String)| {
-        let of_day = || times_of_day_s(table, idx).is_some();
         let is_time = matches!(spelling::meaning(name), Meaning::WrongUnit(Channel::Time, _));
         let in_key = unit_in_key(&bare_key(name));
         let number = idx + 1;
         let column = |unit| column_use(Channel::Time, number, name.clone(), Some(unit));
-        if (is_time || in_key.is_some()) && of_day() {
+        if (is_time || in_key.is_some()) && is_time_of_day(table, idx) {
             return Some((column(Quantity::Time.si_unit()), None));
         }
         // A row of units may call it `unix time`.
@@ -187,6 +192,14 @@ mod tests {
             assert_eq!(is_said, is_told, "{header}: {said:?}");
             assert!(!said.iter().any(|note| note.contains("is left out")), "{header}: {said:?}");
         }
+    }
+
+    #[test]
+    fn a_time_of_day_has_no_unit_that_is_asked_for() {
+        let loaded = read("Time", ["12:00:00.0", "12:00:00.5", "12:00:01.0"]).unwrap();
+        let said: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+        assert!(!said.iter().any(|note| note.contains("\"Time\" names no unit")), "{said:?}");
+        assert!(said.iter().any(|note| note.contains("\"x\" names no unit")), "{said:?}");
     }
 
     /// Apps that record with telephones write such a row of units.

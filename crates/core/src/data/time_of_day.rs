@@ -27,6 +27,12 @@ pub(super) fn times_of_day_s(table: &Table, column_idx: usize) -> Option<Result<
     Some(stamps.and_then(|stamps| instants_s(&stamps)))
 }
 
+/// Whether the first cell of a column is such a time.
+pub(super) fn is_time_of_day(table: &Table, column_idx: usize) -> bool {
+    let cell = table.cell(0, column_idx);
+    days_of(&cell).is_some() || Stamp::read(&cell).is_some()
+}
+
 /// As [`times_of_day_s`], of cells that were read.
 fn instants_s(stamps: &[Stamp]) -> Result<Vec<f64>, usize> {
     if let Some(days) = days(stamps) {
