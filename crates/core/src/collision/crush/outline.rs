@@ -1,6 +1,8 @@
 //! The outline of the front of the striking vehicle in plan view, and its division into the
 //! elements (springs) of the crush model.
 
+use std::f64::consts::FRAC_PI_2;
+
 use serde::{Deserialize, Serialize};
 
 /// Magnitude of the slope dy/dx of the outline at which the curved corner ends and the straight
@@ -66,9 +68,14 @@ impl Nose {
     /// `dy/dx = −tan(angle)`.
     ///
     /// - `angle_rad`: angle between the longitudinal axis of the vehicle and the wall, rad; 0 if
-    ///   the wall is parallel to the side. The slope is limited to that of the corner.
+    ///   the wall is parallel to the side. The slope is limited to that of the corner, also where the front
+    ///   is turned beyond square to the wall.
     pub fn touching_point_m(&self, angle_rad: f64) -> [f64; 2] {
-        let slope = angle_rad.tan().clamp(0.0, FRONT_SLOPE);
+        let slope = match angle_rad < FRAC_PI_2 {
+            true => angle_rad.tan().clamp(0.0, FRONT_SLOPE),
+            // The tangent changes its sign there.
+            false => FRONT_SLOPE,
+        };
         self.corner_point_m(slope)
     }
 
@@ -188,6 +195,18 @@ mod tests {
         let oncoming = [(std::f64::consts::PI + 0.3, [-2.3, 0.6]), (-2.9, [-2.1, 0.8])];
         let all: Vec<_> = contacts.iter().copied().chain(across).chain(oncoming).collect();
         assert_eq!(Nose::fit(&all), Nose::fit(&contacts));
+    }
+
+    /// By the rounding of a heading of 90° a front touched with its flank, and a predicted impulse was larger
+    /// by a third.
+    #[test]
+    fn a_front_that_is_square_to_a_flank_touches_it_with_the_front() {
+        let nose = Nose::default();
+        let [x, y] = nose.touching_point_m(FRAC_PI_2 - 1e-3);
+        for angle_rad in [FRAC_PI_2 - 1e-12, FRAC_PI_2, FRAC_PI_2 + 1e-12, FRAC_PI_2 + 1e-3] {
+            let [at_x, at_y] = nose.touching_point_m(angle_rad);
+            assert!((at_x - x).hypot(at_y - y) < 1e-9, "{angle_rad}: {at_x} {at_y}");
+        }
     }
 
     #[test]
