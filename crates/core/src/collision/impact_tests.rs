@@ -227,6 +227,27 @@ proptest! {
         prop_assert_eq!(one.regime, other.regime);
     }
 
+    /// Which of two vehicles strikes and which is struck is a matter of telling.
+    #[test]
+    fn exchanged_vehicles_have_the_opposite_impulse(
+        impact in impacts(FrictionModel::Limit),
+    ) {
+        let gamma = impact.surface.normal_angle_world_rad + std::f64::consts::PI;
+        let exchanged = Impact {
+            struck: impact.striking,
+            striking: impact.struck,
+            surface: ContactSurface { normal_angle_world_rad: gamma, ..impact.surface },
+        };
+        let (one, other) = (impact.solve().unwrap(), exchanged.solve().unwrap());
+        let (momentum, _) = scales(&impact);
+        for i in 0..2 {
+            let off = (one.impulse_world_n_s[i] + other.impulse_world_n_s[i]).abs();
+            prop_assert!(off < 1e-9 * momentum, "{one:?} {other:?}");
+        }
+        let loss_j = (one.dissipated_energy_j - other.dissipated_energy_j).abs();
+        prop_assert!(loss_j <= 1e-6 * one.dissipated_energy_j.abs().max(1.0), "{one:?} {other:?}");
+    }
+
     #[test]
     fn a_common_velocity_changes_nothing(
         impact in impacts(FrictionModel::Limit),
