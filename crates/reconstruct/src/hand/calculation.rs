@@ -6,17 +6,19 @@
 //!
 //! The intervals come from draws: each input is normal about its value with its standard deviation, cut off at
 //! the limits of its range, and independent of the others; points of a mark are normal in X and in Y. Inputs
-//! whose standard deviation is 0 are exact. The draws follow from the seed alone.
+//! whose standard deviation is that of one rule, such as the drag factors of several surfaces, are off together.
+//! Inputs whose standard deviation is 0 are exact. The draws follow from the seed alone.
 
 use std::collections::BTreeMap;
 
 use rand::RngExt as _;
 
 use crate::evidence::Stated;
+use crate::hand::cut::Cut;
 use crate::hand::field::POINTS;
 use crate::hand::values::HandValues;
 use crate::hand::{HandDefault, HandField, HandMethod, HandOutput};
-use impactlab_core::numerics::{normal_cdf, normal_quantile, quantile_of_sorted, random_stream};
+use impactlab_core::numerics::{normal_quantile, quantile_of_sorted, random_stream};
 use impactlab_core::ranges::{HAND_COORDINATE, OutOfRange};
 use impactlab_core::units::{Estimate, Phrase};
 
@@ -62,6 +64,13 @@ pub struct HandNumber {
     pub is_sigma_assumed: bool,
 }
 
+impl HandNumber {
+    /// The rule by which it is off together with others: one that stands for their standard deviations.
+    pub fn rule(&self) -> Option<&'static str> {
+        self.field.rule.filter(|_| self.is_sigma_assumed)
+    }
+}
+
 /// A number that a method gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HandQuantity {
@@ -86,6 +95,8 @@ pub struct HandSensitivity {
     pub step: f64,
     /// Whether it is exact, so that the step is none of its errors.
     pub is_exact: bool,
+    /// The rule by which it is off together with others, if it is.
+    pub rule: Option<&'static str>,
     /// Change of each output, SI; of points the standard deviation that they bring.
     pub changes: Vec<Option<f64>>,
 }
@@ -359,7 +370,8 @@ impl HandQuestion<'_> {
             let points = self.points_m;
             let changes = change(&self.values(&low, points), &self.values(&high, points));
             let (input, label) = (field.si_key(), field.label);
-            (step > 0.0).then_some(HandSensitivity { input, label, step, is_exact, changes })
+            let rule = number.rule();
+            (step > 0.0).then_some(HandSensitivity { input, label, step, is_exact, rule, changes })
         };
         let moves = numbers.iter().filter(|number| number.field.key != POINT_ERROR);
         let mut all: Vec<HandSensitivity> = moves.filter_map(of_number).collect();
@@ -396,7 +408,7 @@ impl HandQuestion<'_> {
         }
         let changes = squares.into_iter().map(|sum| sum.map(f64::sqrt)).collect();
         let (input, label) = (POINTS.to_owned(), "points of the mark");
-        Some(HandSensitivity { input, label, step, is_exact: false, changes })
+        Some(HandSensitivity { input, label, step, is_exact: false, rule: None, changes })
     }
 
     /// The outputs of each draw from which the first one follows.
@@ -408,22 +420,29 @@ impl HandQuestion<'_> {
     ) -> Vec<Vec<f64>> {
         let solve = self.method.formula().solve;
         let fields = self.method.fields();
-        let varied: Vec<(usize, Cut)> = numbers
+        let varied: Vec<&HandNumber> = numbers.iter().filter(|number| number.sigma > 0.0).collect();
+        let varied: Vec<(usize, Cut, usize)> = varied
             .iter()
-            .filter(|number| number.sigma > 0.0)
-            .filter_map(|number| {
+            .enumerate()
+            .filter_map(|(own, number)| {
                 let idx = fields.iter().position(|field| field.key == number.field.key)?;
-                Some((idx, Cut::new(number)))
+                let first = varied.iter().position(|of| of.rule() == number.rule());
+                Some((idx, Cut::new(number), number.rule().and(first).unwrap_or(own)))
             })
             .collect();
+        let mut probabilities = vec![0.0; varied.len()];
         let point_error = self.point_error(table);
         let mut rng = random_stream(seed, "hand", 0);
         let (mut numbers, mut points) = (table.to_vec(), self.points_m.to_vec());
         let mut outputs = Vec::with_capacity(draws);
         for _ in 0..draws {
-            for (idx, cut) in &varied {
+            for (own, (idx, cut, first)) in varied.iter().enumerate() {
+                // One that is off together with an earlier one has its probability.
+                let is_own = *first == own;
+                probabilities[own] =
+                    if is_own { rng.random::<f64>() } else { probabilities[*first] };
                 if let Some(entry) = numbers.get_mut(*idx) {
-                    *entry = Some(cut.at(rng.random::<f64>()));
+                    *entry = Some(cut.at(probabilities[own]));
                 }
             }
             if point_error > 0.0 {
@@ -440,38 +459,18 @@ impl HandQuestion<'_> {
     }
 }
 
-/// A normal distribution that is cut off at the limits of a range.
-#[derive(Debug, Clone, Copy)]
-struct Cut {
-    value: f64,
-    sigma: f64,
-    limits: [f64; 2],
-    /// Probabilities below the limits without the cut.
-    below: [f64; 2],
-}
-
-impl Cut {
-    fn new(number: &HandNumber) -> Self {
-        let HandNumber { field, value, sigma, .. } = *number;
-        let limits = [field.range.low, field.range.high];
-        let below = limits.map(|limit| normal_cdf((limit - value) / sigma));
-        Self { value, sigma, limits, below }
-    }
-
-    /// The value with a probability below it.
-    fn at(&self, probability: f64) -> f64 {
-        let [low, high] = self.below;
-        let z = normal_quantile(low + probability * (high - low));
-        (self.value + self.sigma * z).clamp(self.limits[0], self.limits[1])
-    }
-}
-
 /// Standard deviation of an output to first order; `None` if an input moves it to where it is none.
 fn first_order(sensitivities: &[HandSensitivity], idx: usize) -> Option<f64> {
-    let of_errors = sensitivities.iter().filter(|of| !of.is_exact);
-    let changes: Option<Vec<f64>> =
-        of_errors.map(|of| of.changes.get(idx).copied().flatten()).collect();
-    Some(changes?.iter().map(|change| change * change).sum::<f64>().sqrt())
+    let (mut squares, mut of_rules) = (0.0, BTreeMap::<&str, f64>::new());
+    for of in sensitivities.iter().filter(|of| !of.is_exact) {
+        let change = of.changes.get(idx).copied().flatten()?;
+        match of.rule {
+            Some(rule) => *of_rules.entry(rule).or_default() += change,
+            None => squares += change * change,
+        }
+    }
+    squares += of_rules.values().map(|change| change * change).sum::<f64>();
+    Some(squares.sqrt())
 }
 
 /// Median and intervals of an output over the draws; `None` if no draw has it.

@@ -146,6 +146,43 @@ fn inputs_that_are_wrong_are_named() {
     }
 }
 
+/// Half of a skid on the same surface had a drag factor of its own, and the interval was a quarter narrower.
+#[test]
+fn a_skid_told_as_two_surfaces_has_the_interval_of_one() {
+    let asked = |inputs: &[(&str, Stated)]| {
+        let inputs = inputs.iter().map(|(key, stated)| ((*key).to_owned(), *stated)).collect();
+        let question = HandQuestion { method: HandMethod::Skid, inputs: &inputs, points_m: &[] };
+        let answer = question.answer(20_000, 7).unwrap();
+        let speed = &answer.quantities[0];
+        let [low, high] = speed.estimate.interval(0.9).unwrap();
+        [speed.value, high - low, speed.sigma.unwrap()]
+    };
+    let by_rule = Stated { value: Some(0.7), sigma: None };
+    let usual = [
+        ("grade", stated(0.0, 0.0)),
+        ("end_speed_m_s", stated(0.0, 0.0)),
+        ("other_speed_m_s", stated(0.0, 0.0)),
+    ];
+    let with = |more: &[(&'static str, Stated)]| asked(&[&usual[..], more].concat());
+    let one = with(&[("distance_m", stated(30.0, 0.0)), ("friction", by_rule)]);
+    let halves = |friction: Stated| {
+        with(&[
+            ("distance_m", stated(15.0, 0.0)),
+            ("friction", friction),
+            ("distance_2_m", stated(15.0, 0.0)),
+            ("friction_2", friction),
+            ("grade_2", stated(0.0, 0.0)),
+        ])
+    };
+    let [value, width, sigma] = halves(by_rule);
+    assert!((value / one[0] - 1.0).abs() < 1e-12, "{value}");
+    assert!((width / one[1] - 1.0).abs() < 1e-9, "{width}, expected {}", one[1]);
+    assert!((sigma / one[2] - 1.0).abs() < 1e-3, "{sigma}, expected {}", one[2]);
+    // Two that were measured are independent.
+    let [_, measured, _] = halves(stated(0.7, 0.07));
+    assert!((measured / one[1] - 0.5_f64.sqrt()).abs() < 0.03, "{measured} of {}", one[1]);
+}
+
 /// Restitution and effective masses were read beside one vehicle and changed nothing, as did the error of the
 /// points of a mark without points and a standard deviation without its value.
 #[test]

@@ -20,6 +20,9 @@ pub struct HandField {
     pub default: HandDefault,
     /// Key of the input beside which alone it has a meaning.
     pub(super) needs: Option<&'static str>,
+    /// The rule that stands for its standard deviation where none is stated, if it stands for several inputs,
+    /// which are then off together.
+    pub(super) rule: Option<&'static str>,
     /// Standard deviation where none is stated.
     sigma: DefaultSigma,
 }
@@ -55,7 +58,7 @@ impl HandField {
         sigma: f64,
     ) -> Self {
         let sigma = DefaultSigma::Fixed(sigma);
-        Self { key, label, range, default: HandDefault::Required, needs: None, sigma }
+        Self { key, label, range, default: HandDefault::Required, needs: None, rule: None, sigma }
     }
 
     /// The same with a standard deviation that is a share of the value.
@@ -66,7 +69,7 @@ impl HandField {
         share: f64,
     ) -> Self {
         let sigma = DefaultSigma::Share(share);
-        Self { key, label, range, default: HandDefault::Required, needs: None, sigma }
+        Self { key, label, range, default: HandDefault::Required, needs: None, rule: None, sigma }
     }
 
     /// The same, which may be left out.
@@ -77,6 +80,11 @@ impl HandField {
     /// The same with a value where none is entered, SI.
     pub(super) const fn or(self, value: f64) -> Self {
         Self { default: HandDefault::Value(value), ..self }
+    }
+
+    /// The same, which is off together with others of a rule.
+    pub(super) const fn by_rule(self, rule: &'static str) -> Self {
+        Self { rule: Some(rule), ..self }
     }
 
     /// The same, which has a meaning beside another input alone.

@@ -11,6 +11,7 @@ mod baseline;
 mod calculation;
 mod checks;
 mod crush;
+mod cut;
 mod field;
 mod method;
 mod momentum;

@@ -42,10 +42,14 @@ const SURFACES: [[&str; 3]; 4] = [
     ["distance_4", "friction_4", "grade_4"],
 ];
 
+/// The rule for the standard deviation of a drag factor, by which those of all surfaces are off together.
+const DRAG_FACTORS: &str = "drag factors";
+
 const DISTANCE: HandField =
     HandField::new("distance", "distance of the slide", HAND_DISTANCE, DISTANCE_SIGMA_M);
 const FRICTION: HandField =
-    HandField::new("friction", "drag factor of locked wheels", ROAD_FRICTION, DRAG_SIGMA);
+    HandField::new("friction", "drag factor of locked wheels", ROAD_FRICTION, DRAG_SIGMA)
+        .by_rule(DRAG_FACTORS);
 const GRADE: HandField = HandField::new("grade", "grade, uphill positive", HAND_GRADE, GRADE_SIGMA);
 const END_SPEED: HandField =
     HandField::relative("end_speed", "speed at the end of the slide", EVIDENCE_SPEED, 0.1);
@@ -112,15 +116,21 @@ pub(super) const SKID: Formula = Formula {
         .or(0.0),
         HandField::new("distance_2", "distance on surface 2", HAND_DISTANCE, DISTANCE_SIGMA_M)
             .open(),
-        HandField::new("friction_2", "drag factor of surface 2", ROAD_FRICTION, DRAG_SIGMA).open(),
+        HandField::new("friction_2", "drag factor of surface 2", ROAD_FRICTION, DRAG_SIGMA)
+            .open()
+            .by_rule(DRAG_FACTORS),
         HandField::new("grade_2", "grade of surface 2", HAND_GRADE, GRADE_SIGMA).open(),
         HandField::new("distance_3", "distance on surface 3", HAND_DISTANCE, DISTANCE_SIGMA_M)
             .open(),
-        HandField::new("friction_3", "drag factor of surface 3", ROAD_FRICTION, DRAG_SIGMA).open(),
+        HandField::new("friction_3", "drag factor of surface 3", ROAD_FRICTION, DRAG_SIGMA)
+            .open()
+            .by_rule(DRAG_FACTORS),
         HandField::new("grade_3", "grade of surface 3", HAND_GRADE, GRADE_SIGMA).open(),
         HandField::new("distance_4", "distance on surface 4", HAND_DISTANCE, DISTANCE_SIGMA_M)
             .open(),
-        HandField::new("friction_4", "drag factor of surface 4", ROAD_FRICTION, DRAG_SIGMA).open(),
+        HandField::new("friction_4", "drag factor of surface 4", ROAD_FRICTION, DRAG_SIGMA)
+            .open()
+            .by_rule(DRAG_FACTORS),
         HandField::new("grade_4", "grade of surface 4", HAND_GRADE, GRADE_SIGMA).open(),
     ],
     outputs: &[SPEED, DECELERATION],

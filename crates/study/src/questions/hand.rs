@@ -302,7 +302,26 @@ fn caveats(answer: &HandAnswer, draws: usize, bias: Option<&YawMarkBias>) -> Cav
          von den anderen",
     );
     all.extend((!is_exact).then(|| Caveat::new(CaveatKind::Note, phrase)));
+    all.extend(off_together(&answer.numbers));
     all.into_iter().collect()
+}
+
+/// That inputs whose standard deviations stand in one rule are off together, if there are several.
+fn off_together(numbers: &[HandNumber]) -> Option<Caveat> {
+    let of_rule = numbers.iter().filter(|number| number.rule().is_some() && number.sigma > 0.0);
+    let labels: Vec<Phrase> = of_rule
+        .map(|number| Phrase::of(PhraseValue::Term(number.field.label.to_owned())))
+        .collect();
+    (labels.len() > 1).then(|| {
+        let phrase = Phrase::new(
+            "no standard deviation is stated of these; one rule of the program stands for all of them, so that \
+             they are too high or too low together: {0}",
+            "Die nicht angegebenen Standardabweichungen folgen hier einer gemeinsamen Regel; gemeinsam zu groß \
+             oder zu klein gezogen werden: {0}",
+        )
+        .with(PhraseValue::phrase(Phrase::joined(labels, "; ")));
+        Caveat::new(CaveatKind::Note, phrase)
+    })
 }
 
 fn left_out(n_unsolved: usize, draws: usize) -> Caveat {
