@@ -14,6 +14,9 @@ use impactlab_reconstruct::{
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
 
+/// Sum of probabilities below 1 that is rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// That the evidence leaves more than one course of events possible.
 pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
     let course = |mode: &Mode| {
@@ -22,6 +25,12 @@ pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
             .with(PhraseValue::Term(mode.name.clone()))
             .with(PhraseValue::Chance { share, error })
     };
+    // Those that are too rare to be told one by one.
+    let rare = 1.0 - modes.iter().map(|mode| mode.probability).sum::<f64>();
+    let others = (rare > ROUNDING).then(|| {
+        Phrase::new("rarer ones with {0} together", "seltenere mit zusammen {0}")
+            .with(PhraseValue::Share(rare))
+    });
     (modes.len() > 1).then(|| {
         let text = Phrase::new(
             "{0} courses of events are possible ({1}): a median or an interval over all of them may be true of \
@@ -30,7 +39,7 @@ pub(super) fn several_courses(modes: &[Mode]) -> Option<Caveat> {
              Umständen auf keinen zu. Maßgeblich sind die Werte jedes einzelnen",
         )
         .with(PhraseValue::Name(modes.len().to_string()))
-        .with(PhraseValue::phrase(Phrase::joined(modes.iter().map(course), "; ")));
+        .with(PhraseValue::phrase(Phrase::joined(modes.iter().map(course).chain(others), "; ")));
         Caveat::new(CaveatKind::SeveralCourses, text)
             .with_value("courses of events", modes.len() as f64)
             .with_range([1.0, 1.0])
@@ -259,6 +268,23 @@ pub(super) fn of_fit(fit: &[EvidenceFit]) -> Vec<Caveat> {
 mod tests {
     use super::*;
     use impactlab_reconstruct::ComparedBy;
+
+    /// Courses of less than 1 % were left out, and nothing said what the others lack to 1.
+    #[test]
+    fn the_chances_of_courses_that_are_told_add_up_to_one() {
+        let mode = |name: &str, probability| Mode {
+            name: name.to_owned(),
+            probability,
+            standard_error: 0.02,
+            quantities: Vec::new(),
+            members: Vec::new(),
+        };
+        let whole = several_courses(&[mode("left", 0.7), mode("right", 0.3)]).unwrap();
+        assert!(!whole.text.contains("rarer"), "{}", whole.text);
+        let part = several_courses(&[mode("left", 0.7), mode("right", 0.285)]).unwrap();
+        assert!(part.text.contains("; rarer ones with 1.5 % together)"), "{}", part.text);
+        assert_eq!(several_courses(&[mode("left", 0.995)]), None);
+    }
 
     /// “found 99.000 km/h, expected 83.523 km/h” claimed a precision that neither has.
     #[test]
