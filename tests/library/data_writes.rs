@@ -60,6 +60,25 @@ fn a_replaced_file_keeps_its_permissions() {
     }
 }
 
+/// While a private file was written, and after a kill, everybody could read what was to become of it.
+#[test]
+fn nobody_reads_in_the_making_what_is_private() {
+    let here = folder();
+    let path = here.path().join("case.impactlab");
+    fs::write(&path, "old").unwrap();
+    set_mode(&path, 0o600);
+    let mut seen = Vec::new();
+    let written = write_atomically(&path, Existing::Replace, |out| {
+        out.write_all(b"new")?;
+        let making = names(here.path()).into_iter().filter(|name| name.ends_with(".tmp"));
+        seen.extend(making.map(|name| mode(&here.path().join(name))));
+        Ok(())
+    });
+    written.unwrap();
+    assert_eq!((seen, mode(&path)), (vec![0o600], 0o600));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+}
+
 #[test]
 fn the_target_of_a_symbolic_link_is_replaced_and_the_link_stays() {
     let here = folder();

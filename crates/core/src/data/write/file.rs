@@ -44,7 +44,7 @@ pub fn write_atomically(
 ) -> Result<(), DataError> {
     let target = Target::find(path, existing)?;
     sweep(&target.folder, &target.path);
-    let mut file = temporary_file(&target.folder, &target.path).map_err(target.to_error())?;
+    let mut file = target.temporary_file()?;
     let mut buffered = BufWriter::new(file.as_file_mut());
     write(&mut buffered).and_then(|()| buffered.flush()).map_err(target.to_error())?;
     drop(buffered);
@@ -60,7 +60,7 @@ pub fn write_atomically(
 /// read-only, or is a folder, a device or the like; the folder is missing or cannot be written to.
 pub fn check_target(path: &Path, existing: Existing) -> Result<(), DataError> {
     let target = Target::find(path, existing)?;
-    temporary_file(&target.folder, &target.path).map_err(target.to_error())?;
+    target.temporary_file()?;
     Ok(())
 }
 
@@ -120,6 +120,11 @@ impl Target {
         WriteError::io(&self.path)
     }
 
+    /// Makes the file that will become this one.
+    fn temporary_file(&self) -> Result<NamedTempFile, WriteError> {
+        temporary_file(&self.folder, &self.path, self.is_new()).map_err(self.to_error())
+    }
+
     /// Gives the temporary file its permissions and its name.
     fn put(&self, file: NamedTempFile, existing: Existing) -> Result<(), WriteError> {
         self.keep_permissions(file.as_file()).map_err(self.to_error())?;
@@ -157,7 +162,7 @@ impl Target {
 
     /// Replaces the file at the end of a symbolic link into another file system.
     fn copy(&self, mut complete: File) -> Result<(), WriteError> {
-        let mut file = temporary_file(&self.folder, &self.path).map_err(self.to_error())?;
+        let mut file = self.temporary_file()?;
         io::copy(&mut complete, file.as_file_mut()).map_err(self.to_error())?;
         self.put(file, Existing::Replace)
     }

@@ -17,7 +17,14 @@ const ENDING: &str = ".tmp";
 const MAX_REPEATED_BYTES: usize = 200;
 
 /// Makes a temporary file for a target, locked as long as it is open.
-pub(super) fn temporary_file(folder: &Path, target: &Path) -> io::Result<NamedTempFile> {
+///
+/// - `is_new`: whether there is no such file yet. Until it has the permissions of one that it replaces,
+///   nobody but the user may read it.
+pub(super) fn temporary_file(
+    folder: &Path,
+    target: &Path,
+    is_new: bool,
+) -> io::Result<NamedTempFile> {
     loop {
         let prefix = prefix(target);
         let mut builder = Builder::new();
@@ -26,8 +33,11 @@ pub(super) fn temporary_file(folder: &Path, target: &Path) -> io::Result<NamedTe
         {
             use std::os::unix::fs::PermissionsExt;
             // The umask takes from these what it takes from every new file.
-            builder.permissions(fs::Permissions::from_mode(0o666));
+            let bits = if is_new { 0o666 } else { 0o600 };
+            builder.permissions(fs::Permissions::from_mode(bits));
         }
+        #[cfg(not(unix))]
+        let _ = is_new;
         let file = builder.tempfile_in(folder)?;
         // A file system without locks has no sweeping either.
         let is_locked = file.as_file().lock().is_ok();
