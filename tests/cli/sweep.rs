@@ -157,6 +157,22 @@ fn a_broken_chunk_is_found_and_computed_anew() {
     assert!(said.contains("chunks are missing: 0;"), "{said}");
 }
 
+/// Hours of rows were lost where a plan was made anew in the folder of another one.
+#[test]
+fn whole_rows_of_another_plan_are_not_replaced() {
+    let folder = TempDir::new().unwrap();
+    let plan = PIT.replace("n = 10", "n = 2").replace("chunk = 3", "chunk = 1");
+    let first = planned(&folder, &plan, "first");
+    ok(run(&["run", shown(&first), "--chunk", "1"]));
+    let second = planned(&folder, &plan.replace("seed = 5", "seed = 6"), "second");
+    let foreign = chunk_path(&second, 1);
+    fs::copy(chunk_path(&first, 1), &foreign).unwrap();
+    let before = fs::read(&foreign).unwrap();
+    let said = error(&["run", shown(&second), "--chunk", "1"]);
+    assert!(said.contains("part-000001.parquet: holds rows of another plan"), "{said}");
+    assert!(fs::read(&foreign).unwrap() == before, "they are as they were");
+}
+
 #[test]
 fn a_plan_that_is_wrong_is_refused_with_its_place() {
     let folder = TempDir::new().unwrap();

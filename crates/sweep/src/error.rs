@@ -86,6 +86,16 @@ pub enum SweepError {
         /// What is wrong.
         what: String,
     },
+    /// A file of the name of a chunk holds rows of another plan, which somebody has computed.
+    #[error(
+        "{}: holds rows of another plan, which are not replaced; move them away, or make the plan in \
+         another folder",
+        path.display()
+    )]
+    OtherPlan {
+        /// The file.
+        path: PathBuf,
+    },
     /// Rows cannot be written as a table.
     #[error("the rows cannot be written as a table")]
     Encode(#[from] parquet::errors::ParquetError),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use crate::chunk::{chunk_path, read_chunk, rows_bytes};
+use crate::chunk::{chunk_path, read_chunk, read_rows, rows_bytes};
 use crate::row::{Answerer, Row};
 use crate::rows::Rows;
 use crate::{Plan, SweepError};
@@ -23,7 +23,7 @@ pub struct RunReport {
     pub computed: Vec<u64>,
     /// Chunks that were there already.
     pub kept: Vec<u64>,
-    /// Chunks that were broken or of another plan, and were computed anew, each with what was wrong.
+    /// Chunks that were broken, and were computed anew, each with what was wrong.
     pub replaced: Vec<(u64, String)>,
     /// Rows that were computed.
     pub rows: u64,
@@ -58,11 +58,12 @@ pub fn answer_rows(
     Ok(all)
 }
 
-/// Runs chunks of the plan in a folder. One that is there and whole is kept.
+/// Runs chunks of the plan in a folder. One that is there and whole is kept, one that is broken is computed
+/// anew.
 ///
 /// # Errors
-/// [`SweepError`]: above all [`SweepError::OtherProgram`], and [`SweepError::Cancelled`], which keeps what is
-/// finished.
+/// [`SweepError`]: above all [`SweepError::OtherProgram`], [`SweepError::OtherPlan`] for whole rows of another
+/// plan, and [`SweepError::Cancelled`], which keeps what is finished.
 pub fn run_chunks(
     folder: &Path,
     chunks: &[u64],
@@ -91,6 +92,9 @@ pub fn run_chunks(
                     kept_rows += n_rows(chunk);
                     continue;
                 }
+                Err(SweepError::Rows { .. }) if is_of_other_plan(&path, &plan) => {
+                    return Err(SweepError::OtherPlan { path });
+                }
                 Err(SweepError::Rows { what, .. }) => run.replaced.push((chunk, what)),
                 Err(error) => return Err(error),
             }
@@ -111,6 +115,11 @@ pub fn run_chunks(
         run.computed.push(chunk);
     }
     Ok(run)
+}
+
+/// Whether a file holds whole rows of another plan.
+fn is_of_other_plan(path: &Path, plan: &Plan) -> bool {
+    read_rows(path).is_ok_and(|rows| rows.meta.plan_sha256 != plan.sha256())
 }
 
 /// Runs one chunk, and gives the path of its file: for schedulers that call a function.
