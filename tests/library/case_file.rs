@@ -379,8 +379,15 @@ fn a_package_has_the_files_of_questions_and_nothing_else_that_a_case_names() {
     let folder = folder("packed");
     fs::write(folder.join("secret"), "x").expect("written");
     let mut case = case(&force_file(&folder));
-    case.variants[0].forms = serde_json::json!({"x": [folder.join("secret")]});
+    let secret = folder.join("secret");
+    let unasked = CheckRequest { paths: vec![secret.clone()], all: false, map: None };
+    case.variants[0].unasked = vec![unasked.into()];
+    case.variants[0].view = serde_json::json!({"drawn": secret});
+    case.variants[0].forms = serde_json::json!({"x": [secret]});
     let files = pack(&case, &folder.join("a.zip"), Existing::Refuse).expect("packed");
+    let unpacked = unpack(&folder.join("a.zip"), &folder.join("there")).expect("unpacked");
+    let unpacked = CaseFile::load(&unpacked).expect("loaded");
+    assert!(matches!(&unpacked.files[..], [file] if file.path.ends_with("force.csv")));
     let names: Vec<&str> = files.iter().map(|file| file.name.as_str()).collect();
     assert_eq!(names, ["files/0/force.csv"]);
     assert_eq!(files[0].path, folder.join("force.csv"));

@@ -1,12 +1,18 @@
 //! The opinion at the front of a report: short, with probabilities before medians, what differs between
 //! variants, and who gives it.
 
+use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab_core::units::UnitSystem;
-use impactlab_document::report::{Block, Language, Paper, ReportDocument, SectionKind, Table, pdf};
+use impactlab_document::report::{
+    Block, Language, Paper, ReportDocument, SectionKind, Table, pdf, report_case,
+};
 use impactlab_study::case_file::{CaseFile, Expert, Variant};
-use impactlab_study::{EvidenceChoice, ReconstructRequest};
+use impactlab_study::{
+    EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Request, ScenarioChoice,
+};
 
 use crate::report::{english, impact_case, pit, report, settings, staged};
 
@@ -95,6 +101,41 @@ fn a_reconstruction_has_an_opinion_with_its_materials() {
     let (_, case, document, _) = staged();
     assert!(says(document, "struck car"));
     assert!(says(document, &case.files[0].sha256));
+}
+
+/// A file of another client, which the window had drawn earlier, stood among the materials of the opinion, and
+/// the report of one variant listed the files of the others.
+#[test]
+fn a_report_names_no_file_that_its_questions_do_not_rest_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let paths = ["told.toml", "other.toml", "unasked.toml", "drawn.toml"].map(|name| {
+        let path = folder.path().join(name);
+        fs::copy("assets/scenarios/pit_right_rear.toml", &path).expect("copied");
+        path
+    });
+    let [told, other, unasked, drawn] = &paths;
+    let ask =
+        |path: &Path| Request::from(ImpactRequest::new(ScenarioChoice::File(path.to_owned())));
+    let variant = |name: &str, path: &Path| Variant {
+        name: name.to_owned(),
+        questions: vec![ask(path)],
+        ..Variant::default()
+    };
+    let mut case = CaseFile::new("case", variant("first", told));
+    case.variants[0].unasked = vec![ask(unasked)];
+    case.variants[0].view = serde_json::json!({"recording": drawn});
+    case.variants.push(variant("second", other));
+    case.record_files();
+    assert_eq!(case.files.len(), paths.len());
+    let mut go_on = |_: impactlab_study::Event<'_>| ControlFlow::Continue(());
+    let (library, variants) = (Library::default(), ["first".to_owned()]);
+    let made = report_case(&case, None, &variants, &english(), &library, &mut go_on);
+    let (document, _) = made.expect("a case").complete().expect("nobody cancels");
+    let text = document.to_markdown();
+    assert!(text.contains("told.toml"), "{text}");
+    for name in ["other.toml", "unasked.toml", "drawn.toml"] {
+        assert!(!text.contains(name), "{name}: {text}");
+    }
 }
 
 /// Where the figures over all courses of events may be true of none, the opinion had no others.

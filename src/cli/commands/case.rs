@@ -165,6 +165,9 @@ fn pack_case(args: &PackArgs, console: &mut Console<'_>) -> Result<Verdict, CliE
             writeln!(out, "{name}: {}", shown_path(path))?;
         }
         writeln!(out, "{} written", shown_path(&args.out))?;
+        for unused in case.unused() {
+            writeln!(out, "note: {}", within_line(&unused))?;
+        }
         print_changes(out, edited.as_slice())
     })?;
     Ok(Verdict::Clean)

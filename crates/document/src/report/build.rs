@@ -35,7 +35,8 @@ pub(super) struct VariantParts {
     pub answers: Vec<Result<Part, String>>,
 }
 
-/// Asks every question of a case once and makes the report of the answers.
+/// Asks every question of a case once and makes the report of the answers. It names no file that these questions
+/// do not rest on: not those of other variants, and none that is filled in and not asked.
 ///
 /// - `on_disk`: the file of the case, if the case is as it stands there;
 /// - `variants`: names of the variants that are asked; empty for all.
@@ -51,6 +52,7 @@ pub fn report_case(
     observer: &mut Observer<'_>,
 ) -> Result<Outcome<(ReportDocument, CaseReport)>, CaseError> {
     let (wording, paths) = (Wording::new(settings), ShownPaths::from_case(case));
+    let case = &case.asked(variants)?;
     let grounds = Grounds::default();
     let context = Context { wording: &wording, paths: &paths, grounds: &grounds };
     let mut parts: Vec<VariantParts> = Vec::new();

@@ -50,8 +50,9 @@ pub struct PackedFile {
     pub path: PathBuf,
 }
 
-/// Packs a case and every file that it uses into a zip, whole or not at all, and returns the files in their
-/// order. Who may be handed them is for the caller to ask ([`CaseFile::reach`]).
+/// Packs a case and every file that its questions use into a zip, whole or not at all, and returns the files in
+/// their order. A file that is filled in and not asked stays here. Who may be handed the others is for the caller
+/// to ask ([`CaseFile::reach`]).
 ///
 /// # Errors
 /// [`CaseError::Missing`] for a file that is not there, [`CaseError::Zip`], [`CaseError::Data`], also for
@@ -62,11 +63,13 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
     }
     check_inputs(to, &case.input_files())?;
     check_ending(to, "zip")?;
+    let used = case.asked(&[])?.used_paths();
     let mut case = case.clone();
     case.record_files();
+    case.files.retain(|file| used.contains(&file.path));
     let mut entries = Vec::new();
     let mut places = Vec::new();
-    for (used, place) in placed_files(&case.used_paths())? {
+    for (used, place) in placed_files(&used)? {
         let missing = || CaseError::Missing { path: used.clone() };
         if used.is_dir() {
             let io = |source| CaseError::Io { path: used.clone(), source };

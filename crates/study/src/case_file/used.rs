@@ -203,6 +203,30 @@ impl CaseFile {
         self.variants.iter().flat_map(in_variant).collect()
     }
 
+    /// The case with what some of its variants ask and nothing else: no other variant, nothing that is filled in
+    /// and not asked, nothing of how the window draws it, and of its files those that these questions rest
+    /// on.
+    ///
+    /// - `variants`: their names; all of them if there is none.
+    ///
+    /// # Errors
+    /// [`CaseError::NoVariant`].
+    pub fn asked(&self, variants: &[String]) -> Result<Self, CaseError> {
+        if let Some(name) = variants.iter().find(|name| self.variant(name).is_none()) {
+            return Err(self.no_variant(name));
+        }
+        let mut asked = self.clone();
+        asked.variants.retain(|of| variants.is_empty() || variants.contains(&of.name));
+        for variant in &mut asked.variants {
+            variant.unasked.clear();
+            variant.view = serde_json::Value::Null;
+            variant.forms = serde_json::Value::Null;
+        }
+        let used: HashSet<PathBuf> = asked.used_paths().into_iter().collect();
+        asked.files.retain(|file| used.contains(&file.path));
+        Ok(asked)
+    }
+
     /// Every absolute path that stands in the case, whether it is read, written or neither.
     pub(super) fn said_paths(&self) -> HashSet<PathBuf> {
         let in_variant = |variant: &Variant| {
