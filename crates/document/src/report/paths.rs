@@ -15,8 +15,15 @@ pub(super) struct ShownPaths {
 impl ShownPaths {
     /// The paths that a case names.
     pub fn from_case(case: &CaseFile) -> Self {
-        let questions = case.variants.iter().flat_map(|variant| &variant.questions);
-        let mut paths: Vec<PathBuf> = questions.flat_map(Request::input_files).collect();
+        let variants = case.variants.iter();
+        let questions =
+            variants.flat_map(|variant| variant.questions.iter().chain(&variant.unasked));
+        let of_question = |question: &Request| {
+            let written = question.written_path().map(Path::to_owned);
+            let read = [question.input_files(), question.named_paths()].concat();
+            read.into_iter().chain(written)
+        };
+        let mut paths: Vec<PathBuf> = questions.flat_map(of_question).collect();
         paths.extend(case.used_paths());
         paths.extend(case.files.iter().map(|file| file.path.clone()));
         paths.sort();
@@ -33,7 +40,7 @@ impl ShownPaths {
 
     /// A text with file names in place of paths.
     pub fn shown(&self, text: &str) -> String {
-        let replace = |text: String, (path, name): &(String, String)| text.replace(path, name);
+        let replace = |text: String, (path, name): &(String, String)| replaced(&text, path, name);
         self.names.iter().fold(text.to_owned(), replace)
     }
 
@@ -41,5 +48,52 @@ impl ShownPaths {
     pub fn name(&self, path: &Path) -> String {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         name.unwrap_or_else(|| path.to_string_lossy().into_owned())
+    }
+}
+
+/// A text with a name in place of a path wherever that begins there: `/s` is no path in `m/s`.
+fn replaced(text: &str, path: &str, name: &str) -> String {
+    let (mut told, mut end) = (String::with_capacity(text.len()), 0);
+    for (at, _) in text.match_indices(path) {
+        let (before, _) = text.split_at(at);
+        if before.chars().next_back().is_some_and(char::is_alphanumeric) {
+            continue;
+        }
+        told.push_str(&text[end..at]);
+        told.push_str(name);
+        end = at + path.len();
+    }
+    told.push_str(&text[end..]);
+    told
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_study::case_file::Variant;
+    use impactlab_study::{
+        ForceQuestion, ImpactRequest, ModelChoice, PredictForceRequest, ScenarioChoice,
+    };
+
+    /// A report said the home folder with a network that was not there, and had no slash in any unit where a
+    /// file was called `/s`.
+    #[test]
+    fn paths_are_shown_by_their_names_and_nothing_else_is() {
+        let scenario = |path: &str| ScenarioChoice::File(path.into());
+        let mut force = PredictForceRequest::new(ForceQuestion::Scenario(scenario("/s")));
+        force.model = ModelChoice::file("/home/ann/gone/own.safetensors");
+        let questions = vec![force.into()];
+        let unasked = vec![ImpactRequest::new(scenario("/home/ann/gone/later.toml")).into()];
+        let variant = Variant { questions, unasked, ..Variant::default() };
+        let paths = ShownPaths::from_case(&CaseFile::new("case", variant));
+        for (text, expected) in [
+            ("/home/ann/gone/own.safetensors: does not exist", "own.safetensors: does not exist"),
+            ("the file /home/ann/gone/later.toml is not used", "the file later.toml is not used"),
+            ("20 m/s in \"/s\"", "20 m/s in \"s\""),
+            ("/s: 1 m/s", "s: 1 m/s"),
+            ("", ""),
+        ] {
+            assert_eq!(paths.shown(text), expected);
+        }
     }
 }
