@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::files::{MotionFiles, write_motion_prediction};
+use crate::cli::files::{MotionFiles, write_json, write_motion_prediction};
 use crate::cli::options::{
     EndingArgs, OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
 };
 use crate::cli::text::print_answer;
-use impactlab_core::data::{ColumnMap, DatasetKind, Existing, write_atomically};
+use impactlab_core::data::{ColumnMap, DatasetKind};
 use impactlab_core::ranges::{
     DRAWS, REST_LIMIT, ROAD_FRICTION, ROAD_FRICTION_SIGMA, VEHICLE_DRAWS,
 };
@@ -210,9 +210,7 @@ pub(in crate::cli) fn run(
         // What lies in the folder does not say where the folder is.
         let named: Vec<PathBuf> = names.iter().map(PathBuf::from).collect();
         let printed = PrintedMotion { report: &answer.report, files: &named };
-        let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
-        let outcome = staging.join("outcome.json");
-        write_atomically(&outcome, Existing::Refuse, |out| out.write_all(&json))?;
+        write_json(&staging.join("outcome.json"), &printed)?;
         Ok(answer.report.provenance.clone())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };

@@ -1,10 +1,12 @@
 //! The files of `impactlab evaluate force`.
 
+use std::io;
 use std::path::Path;
 
 use serde::Serialize;
 
 use crate::cli::CliError;
+use impactlab_core::data::write::json_without_machine;
 use impactlab_core::data::{Existing, write_atomically};
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::FactWriter;
@@ -32,11 +34,10 @@ pub(in crate::cli) fn write_force_evaluation(
     Ok(())
 }
 
-/// Writes a value as indented JSON into a file that does not exist yet.
-pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
-    write_atomically(path, Existing::Refuse, |out| {
-        serde_json::to_writer_pretty(&mut *out, value)?;
-        writeln!(out)
-    })?;
+/// Writes a report as indented JSON into a file that does not exist yet, in a folder that goes to others.
+pub(in crate::cli) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
+    let json = serde_json::to_string_pretty(value).map_err(io::Error::from)?;
+    let json = json_without_machine(&json);
+    write_atomically(path, Existing::Refuse, |out| writeln!(out, "{json}"))?;
     Ok(())
 }

@@ -5,9 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use impactlab_core::data::{
-    Existing, write_atomically, write_restricted_series_csv, write_restricted_table,
-};
+use crate::cli::files::write_json;
+use impactlab_core::data::{Existing, write_restricted_series_csv, write_restricted_table};
 use impactlab_core::uncertainty::{CurveBands, ForceCurve};
 use impactlab_study::{PredictForceAnswer, StudyError};
 
@@ -31,11 +30,7 @@ pub(in crate::cli) fn write_force_prediction(
     for (i, sample) in forecast.curves.iter().enumerate() {
         write_curve(format!("sample_{:03}.csv", i + 1), sample)?;
     }
-    write_atomically(&path.join("prediction.json"), Existing::Refuse, |out| {
-        serde_json::to_writer_pretty(&mut *out, report)?;
-        writeln!(out)
-    })?;
-    Ok(())
+    write_json(&path.join("prediction.json"), report)
 }
 
 /// One row per instant: time, then mean and edges of each force.

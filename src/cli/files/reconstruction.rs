@@ -5,7 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use impactlab_core::data::{Existing, write_atomically, write_restricted_table};
+use crate::cli::files::write_json;
+use impactlab_core::data::{Existing, write_restricted_table};
 use impactlab_study::ReconstructAnswer;
 
 /// Writes the particles as CSV and the report as JSON into a folder that exists.
@@ -22,9 +23,5 @@ pub(in crate::cli) fn write_reconstruction(
     });
     let table = path.join("particles.csv");
     write_restricted_table(&table, Existing::Refuse, &header, rows, restrictions.as_deref())?;
-    write_atomically(&path.join("reconstruction.json"), Existing::Refuse, |out| {
-        serde_json::to_writer_pretty(&mut *out, report)?;
-        writeln!(out)
-    })?;
-    Ok(())
+    write_json(&path.join("reconstruction.json"), report)
 }

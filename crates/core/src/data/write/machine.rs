@@ -22,6 +22,37 @@ pub fn replace_strings(value: &mut Value, change: &impl Fn(&str) -> Option<Strin
     }
 }
 
+/// JSON as files have it that go to others: each string, keys aside, that is an absolute path, or ends in one
+/// behind `=`, is said from the working folder or by its last part. All else stays to the last digit.
+pub fn json_without_machine(json: &str) -> String {
+    let working_folder = std::env::current_dir().ok();
+    let (mut told, mut rest) = (String::with_capacity(json.len()), json);
+    while let Some((before, from)) = rest.find('"').map(|at| rest.split_at(at)) {
+        let (string, after) = from.split_at(string_length(from));
+        let text = serde_json::from_str::<String>(string).ok().filter(|_| !after.starts_with(':'));
+        let named = text.and_then(|text| without_machine(&text, working_folder.as_deref()));
+        told.push_str(before);
+        match named {
+            Some(named) => told.push_str(&Value::String(named).to_string()),
+            None => told.push_str(string),
+        }
+        rest = after;
+    }
+    told.push_str(rest);
+    told
+}
+
+/// Length of the JSON string that a text begins with, with its quotes, bytes.
+fn string_length(text: &str) -> usize {
+    let mut is_escaped = false;
+    let end = text.char_indices().skip(1).find(|&(_, letter)| {
+        let is_end = letter == '"' && !is_escaped;
+        is_escaped = letter == '\\' && !is_escaped;
+        is_end
+    });
+    end.map_or(text.len(), |(at, _)| at + 1)
+}
+
 /// A path, or an argument that ends in one behind `=`, as files say it that go to others; `None` for any
 /// other text, also for a relative path, which says what its writer chose to say.
 ///
@@ -70,6 +101,19 @@ mod tests {
         let at_root = without_machine("/home/ann/force.csv", Some(Path::new("/")));
         assert_eq!(at_root.as_deref(), Some("force.csv"));
         assert_eq!(without_machine("/home/ann/force.csv", None).as_deref(), Some("force.csv"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn json_keeps_its_order_and_its_numbers() {
+        let json = r#"{"z": 0.1000000000000000055, "/a/key": ["/home/ann/a \"b\\.csv", "m/s", 1e-7],
+            "a": "x\\", "b": "/home/ann/é.csv"}"#;
+        let expected = r#"{"z": 0.1000000000000000055, "/a/key": ["a \"b\\.csv", "m/s", 1e-7],
+            "a": "x\\", "b": "é.csv"}"#;
+        assert_eq!(json_without_machine(json), expected);
+        for broken in ["", "\"", "{\"a\": \"/b", "no strings"] {
+            assert_eq!(json_without_machine(broken), broken);
+        }
     }
 
     #[test]
