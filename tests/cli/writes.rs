@@ -77,6 +77,29 @@ fn a_file_holds_what_its_name_says() {
 }
 
 #[test]
+fn a_package_of_what_is_asked_has_no_drafts() {
+    let folder = TempDir::new().unwrap();
+    let [path, zip] = ["pit.impactlab", "pit.zip"].map(|name| folder.path().join(name));
+    let mut case = json(&fs::read_to_string("assets/examples/pit.impactlab").unwrap());
+    let draft = serde_json::json!({"question": "check", "paths": ["./draft.csv"]});
+    case["variants"][0]["unasked"] = serde_json::json!([draft]);
+    case["variants"][0]["view"] = serde_json::json!({"steering_ratio": 17.25});
+    fs::write(&path, case.to_string()).unwrap();
+    let all = ["--overwrite", "--asked"];
+    for (options, has_drafts) in [(&all[..1], true), (&all[..], false)] {
+        let pack = [&["case", "pack", text(&path)][..], options].concat();
+        ok(command(&pack, &zip).output().unwrap());
+        let out = folder.path().join(format!("drafts {has_drafts}"));
+        let unpacked = ok(command(&["case", "unpack", text(&zip)], &out).output().unwrap());
+        let said = fs::read_to_string(unpacked.trim()).unwrap();
+        for draft in ["draft.csv", "17.25"] {
+            assert_eq!(said.contains(draft), has_drafts, "{options:?}: {said}");
+        }
+        assert!(said.contains("predict_motion"), "the questions are there");
+    }
+}
+
+#[test]
 fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("prediction");

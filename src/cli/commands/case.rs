@@ -90,6 +90,10 @@ struct PackArgs {
     case: PathBuf,
     #[command(flatten)]
     trust: TrustArg,
+    /// Pack what is asked alone, such as for the other side: nothing that is filled in and not asked, nothing of
+    /// how the window draws it
+    #[arg(long)]
+    asked: bool,
     /// The zip
     #[arg(long, value_name = "FILE.zip")]
     out: PathBuf,
@@ -152,6 +156,9 @@ struct Package<'a> {
 
 fn pack_case(args: &PackArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let mut case = CaseFile::load(&args.case)?;
+    if args.asked {
+        case = case.asked(&[])?;
+    }
     args.trust.check(&case, &args.case)?;
     console.check_target(Some(&args.out), args.overwrite.into())?;
     console.reads(std::slice::from_ref(&args.case))?;
