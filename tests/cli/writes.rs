@@ -242,6 +242,19 @@ fn a_training_is_continued_or_replaced_only_where_that_is_said() {
     assert_eq!(names(folder.path()), left);
 }
 
+/// `--overwrite` is said of the model; the file beside it was replaced, whatever it was.
+#[test]
+fn a_file_that_is_no_training_is_not_replaced_by_one() {
+    let folder = TempDir::new().unwrap();
+    let [model, beside] = ["model", "model.training"].map(|name| folder.path().join(name));
+    fs::write(&beside, "mine").unwrap();
+    for more in [&[][..], &["--overwrite"]] {
+        let text = error(train(&folder, &model).args(more));
+        assert!(text.contains("model.training: was not written by an earlier run"), "{text}");
+        assert_eq!(fs::read_to_string(&beside).unwrap(), "mine");
+    }
+}
+
 #[test]
 fn two_trainings_do_not_write_one_file() {
     let folder = TempDir::new().unwrap();

@@ -6,8 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::{BadCases, StudyError};
-use impactlab_core::data::write::WriterLock;
-use impactlab_networks::response::{ResponseConfig, ResponseModel};
+use impactlab_core::data::DataError;
+use impactlab_core::data::write::{WriteError, WriterLock};
+use impactlab_networks::force::FORCE_CHECKPOINT;
+use impactlab_networks::nn::kind_of_file;
+use impactlab_networks::response::{RESPONSE_CHECKPOINT, ResponseConfig, ResponseModel};
 
 /// Where the settings of a training come from.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -73,16 +76,27 @@ impl TrainingOptions {
     ///
     /// # Errors
     /// [`StudyError::TrainingExists`] if there is a training that is neither to go on nor to be
-    /// replaced; [`StudyError::Data`] if another process trains there, or if the file cannot be
-    /// written.
+    /// replaced; [`StudyError::Data`] if another process trains there, if the file cannot be
+    /// written, or if it is no training and so is somebody's.
     pub(crate) fn claim(&self) -> Result<Option<WriterLock>, StudyError> {
         let Some(path) = &self.checkpoint else { return Ok(None) };
         let lock = WriterLock::claim_checkpoint(path)?;
-        if path.exists() && !self.resume && !self.overwrite {
-            return Err(StudyError::TrainingExists { path: path.clone() });
+        if path.exists() && !self.resume {
+            if !is_training(path) {
+                return Err(DataError::from(WriteError::NotOfRun { path: path.clone() }).into());
+            }
+            if !self.overwrite {
+                return Err(StudyError::TrainingExists { path: path.clone() });
+            }
         }
         Ok(Some(lock))
     }
+}
+
+/// Whether a file holds the state of a training.
+fn is_training(path: &Path) -> bool {
+    let kinds = [FORCE_CHECKPOINT.name, RESPONSE_CHECKPOINT.name];
+    kind_of_file(path).is_ok_and(|kind| kinds.contains(&kind.as_str()))
 }
 
 /// Where a training keeps its state: beside its model, as `MODEL.training`.
