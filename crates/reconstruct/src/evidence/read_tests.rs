@@ -241,6 +241,16 @@ fn evidence_in_json_of_an_earlier_version_is_read() {
     assert_eq!((found.striking_marks, found.striking_edr), (Vec::new(), None));
 }
 
+/// The home folder stood in the title of a report, of pictures and of drawings.
+#[test]
+fn evidence_without_a_name_is_called_by_its_file_and_not_by_its_path() {
+    let path = Path::new("/home/ann/cases/crossing.toml");
+    let text = format!("{SINGLE}[[mark]]\nwheel = \"FL\"\npoints_m = [[0, 0], [9, 0]]\n");
+    let named = |text: &str| Evidence::from_toml(TomlFile { path, text }).unwrap().case;
+    assert_eq!(named(&text), "crossing");
+    assert_eq!(named(&format!("case = \"/ a\"\n{text}")), "/ a");
+}
+
 const SINGLE: &str = "kind = \"single_car\"\n[car]\nmass_kg = 1500\n";
 
 #[test]

@@ -81,9 +81,8 @@ pub(super) fn given_force(
 ) -> Result<ForceHistory, StudyError> {
     let path = &file.path;
     let loaded = library.series(file).map_err(|error| error.of_option("--force-map"))?;
-    let name = path.display().to_string();
-    caveats.extend(restrictions::doubtful_data_caveats(&name, &loaded));
-    caveats.extend(restrictions::doubtful_note_caveats(&name, &loaded));
+    caveats.extend(restrictions::doubtful_data_caveats(&file.title(), &loaded));
+    caveats.extend(restrictions::doubtful_note_caveats(&file.title(), &loaded));
     let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
         .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
     // A recorded yaw moment acts about the CG: it does not say where another force acts.
@@ -91,8 +90,10 @@ pub(super) fn given_force(
     if force.mz_n_m.is_none() && !has_contact {
         return Err(StudyError::NoYawMoment { path: path.to_owned() });
     }
-    check_contact_within(&force, duration_s)
-        .map_err(|outside| StudyError::ContactOutside { name, outside })?;
+    check_contact_within(&force, duration_s).map_err(|outside| StudyError::ContactOutside {
+        name: path.display().to_string(),
+        outside,
+    })?;
     caveats.extend(restrictions::cut_record_caveat(&force));
     Ok(force)
 }
