@@ -13,9 +13,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::force::train;
-use crate::program::{
-    SCENARIO, TRAJECTORIES, json, kill_at_checkpoint, names, ok, program, text,
-};
+use crate::program::{SCENARIO, TRAJECTORIES, json, kill_at_checkpoint, names, ok, program, text};
 
 /// What a command that must fail prints at its end.
 fn error(command: &mut Command) -> String {
