@@ -15,6 +15,7 @@ use crate::app::scene::SceneSource;
 use crate::app::variants::are_others_awaited;
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, time_figure};
 use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{
     Figure, FigureElement, MOTION_CHANNELS, analysis_readout, figure_readout,
 };
@@ -66,25 +67,7 @@ fn plots_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, plots: &mut MotionPlots) {
         units,
     };
     plots.update(source, &session.sources);
-    let channels = view.motion_channels.iter().zip(&plots.channels);
-    // What was neither recorded nor simulated has no plot.
-    let channels = channels.filter(|(_, figure)| !figure.elements.is_empty());
-    let channels: Vec<Plot<'_>> = channels
-        .enumerate()
-        .map(|(idx, (channel, figure))| Plot {
-            heading: analysis_readout(analysis, *channel, time_s, units),
-            figure,
-            legend: idx == 0,
-        })
-        .collect();
-    let controls = plots.controls.iter();
-    let controls: Vec<Plot<'_>> = controls
-        .map(|ControlPlot { own, figure }| Plot {
-            heading: figure_readout(own, time_s),
-            figure,
-            legend: true,
-        })
-        .collect();
+    let [channels, controls] = plots.drawn(analysis, &view.motion_channels, time_s, units);
     let n_columns = if ui.available_width() > TWO_COLUMNS_WIDTH { 2 } else { 1 };
     let n_rows = MOTION_CHANNELS.len() / n_columns + usize::from(!controls.is_empty());
     let height = (ui.available_height() / n_rows as f32 - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
@@ -133,6 +116,31 @@ struct Plot<'a> {
     heading: String,
     figure: &'a Figure,
     legend: bool,
+}
+
+impl MotionPlots {
+    /// The plots of the channels, of those that were recorded or simulated, and of the inputs.
+    fn drawn(
+        &self,
+        analysis: &Analysis,
+        channels: &[Channel],
+        time_s: f64,
+        units: UnitSystem,
+    ) -> [Vec<Plot<'_>>; 2] {
+        let of_channels = channels.iter().zip(&self.channels);
+        let of_channels = of_channels.filter(|(_, figure)| !figure.elements.is_empty());
+        let of_channels = of_channels.enumerate().map(|(idx, (channel, figure))| Plot {
+            heading: analysis_readout(analysis, *channel, time_s, units),
+            figure,
+            legend: idx == 0,
+        });
+        let of_controls = self.controls.iter().map(|ControlPlot { own, figure }| Plot {
+            heading: figure_readout(own, time_s),
+            figure,
+            legend: true,
+        });
+        [of_channels.collect(), of_controls.collect()]
+    }
 }
 
 /// Draws the menu in which the curves are chosen, of those that there are.
