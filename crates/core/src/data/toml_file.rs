@@ -108,6 +108,13 @@ impl<'a> TomlFile<'a> {
         read_utf8(path, MAX_SETTINGS_BYTES).map_err(|error| TomlError::File(Box::new(error)))
     }
 
+    /// What the file is called, without its folders, where it does not say its name: it stands in titles and
+    /// tables of files that go to others.
+    pub fn name(self) -> String {
+        let name = self.path.file_name().unwrap_or(self.path.as_os_str());
+        name.to_string_lossy().into_owned()
+    }
+
     /// Parses the file into a value whose fields are the keys of the file.
     ///
     /// # Errors

@@ -165,9 +165,7 @@ impl Evidence {
     fn read(file: TomlFile<'_>, is_draft: bool) -> Result<Self, TomlError> {
         let root = file.parse()?;
         let mut top = TomlTable::root(file, &root);
-        // Not by its path: the name stands in titles of files that go to others.
-        let stem = || file.path.file_stem().unwrap_or(file.path.as_os_str());
-        let case = top.string("case")?.unwrap_or_else(|| stem().to_string_lossy().into_owned());
+        let case = top.string("case")?.unwrap_or_else(|| file.name());
         let kind = kind_of(file, &mut top)?;
         let mut evidence = Self { case, kind, ..Self::default() };
         let mut reader = Reader { table: top, error: None, is_draft };

@@ -247,7 +247,7 @@ fn evidence_without_a_name_is_called_by_its_file_and_not_by_its_path() {
     let path = Path::new("/home/ann/cases/crossing.toml");
     let text = format!("{SINGLE}[[mark]]\nwheel = \"FL\"\npoints_m = [[0, 0], [9, 0]]\n");
     let named = |text: &str| Evidence::from_toml(TomlFile { path, text }).unwrap().case;
-    assert_eq!(named(&text), "crossing");
+    assert_eq!(named(&text), "crossing.toml");
     assert_eq!(named(&format!("case = \"/ a\"\n{text}")), "/ a");
 }
 

@@ -57,7 +57,7 @@ impl DataSheet {
         let class = table.choice("class", &VehicleClass::WORDS)?;
         let drive = table.choice("drive", &Drive::WORDS)?;
         let mut sheet = Self {
-            name: name.unwrap_or_else(|| file.path.display().to_string()),
+            name: name.unwrap_or_else(|| file.name()),
             source: source.unwrap_or_default(),
             equations: if equations == Some(1) { Equations::Paper } else { Equations::Corrected },
             class: class.map_or(VehicleClass::Any, |idx| VehicleClass::ALL[idx]),
@@ -231,6 +231,14 @@ mod tests {
     fn read(sheet: &str) -> Result<VehicleParameters, String> {
         let text = format!("name = \"car\"\n\n[data_sheet]\n{sheet}\n");
         VehicleParameters::parse(&text, Path::new("car.toml")).map_err(|error| error.to_string())
+    }
+
+    /// The home folder stood in reports, and in networks that had learned from the car.
+    #[test]
+    fn a_vehicle_without_a_name_is_called_by_its_file_and_not_by_its_path() {
+        let path = Path::new("/home/ann/cars/own.toml");
+        let text = "[data_sheet]\nclass = \"car\"\n";
+        assert_eq!(VehicleParameters::parse(text, path).unwrap().name, "own.toml");
     }
 
     #[test]
