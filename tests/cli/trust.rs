@@ -3,12 +3,16 @@
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
 use std::fs;
+use std::io::{Read, Write};
 use std::path::Path;
 
+use impactlab_core::data::Existing;
+use impactlab_study::case_file::{CaseFile, Variant, pack};
+use impactlab_study::{ImpactRequest, ScenarioChoice};
 use serde_json::json;
 use tempfile::TempDir;
 
-use crate::program::{json, ok, program};
+use crate::program::{SCENARIO, json, ok, program, text};
 
 /// A folder with a secret beside the folder of a case that asks these questions.
 fn folder_with(questions: &serde_json::Value) -> TempDir {
@@ -78,4 +82,40 @@ fn a_case_writes_and_trains_nothing_unasked() {
     let training = json!([{"question": "train_force", "data": "./set"}]);
     let error = refused(folder_with(&training).path(), &RUN);
     assert!(error.contains("a.impactlab: trains a network; --trust"), "{error}");
+}
+
+/// A file of a package that was changed on the way was unpacked without a word.
+#[test]
+fn a_package_that_is_not_what_was_packed_is_told() {
+    let folder = TempDir::new().unwrap();
+    let [scenario, zip, changed] =
+        ["own.toml", "a.zip", "changed.zip"].map(|name| folder.path().join(name));
+    fs::copy(SCENARIO, &scenario).unwrap();
+    let question = ImpactRequest::new(ScenarioChoice::File(scenario));
+    let variant =
+        Variant { name: "one".into(), questions: vec![question.into()], ..Variant::default() };
+    pack(&CaseFile::new("a", variant), &zip, Existing::Refuse).unwrap();
+    let mut archive = zip::ZipArchive::new(fs::File::open(&zip).unwrap()).unwrap();
+    let mut out = zip::ZipWriter::new(fs::File::create(&changed).unwrap());
+    for idx in 0..archive.len() {
+        let mut entry = archive.by_index(idx).unwrap();
+        let (name, mut text) = (entry.name().unwrap().into_owned(), String::new());
+        entry.read_to_string(&mut text).unwrap();
+        if name.ends_with("own.toml") {
+            text.push_str("# changed on the way\n");
+        }
+        out.start_file(name, zip::write::SimpleFileOptions::default()).unwrap();
+        out.write_all(text.as_bytes()).unwrap();
+    }
+    out.finish().unwrap();
+    for (package, code) in [(&zip, 0), (&changed, 1)] {
+        let to = package.with_extension("unpacked");
+        let mut command = program();
+        let output =
+            command.args(["case", "unpack", text(package), "--out", text(&to)]).output().unwrap();
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{said}");
+        assert_eq!(said.contains("own.toml: has changed since"), code == 1, "{said}");
+        assert!(to.join("a.impactlab").is_file(), "it is unpacked all the same");
+    }
 }

@@ -103,6 +103,8 @@ struct PackArgs {
 
 /// Make a new folder of a zip that `case pack` has written
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Exit code 1 if a file is not what was packed; it is unpacked then too, and named.")]
 struct UnpackArgs {
     /// The zip
     #[arg(value_name = "FILE.zip")]
@@ -125,12 +127,20 @@ pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<
         CaseCommand::Run(args) => run_case(args, console),
         CaseCommand::Check(args) => check_case(args, console),
         CaseCommand::Pack(args) => pack_case(args, console),
-        CaseCommand::Unpack(args) => {
-            let case = unpack(&args.package, &args.out)?;
-            writeln!(console.out, "{}", shown_path(&case))?;
-            Ok(Verdict::Clean)
-        }
+        CaseCommand::Unpack(args) => unpack_case(args, console),
     }
+}
+
+fn unpack_case(args: &UnpackArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let path = unpack(&args.package, &args.out)?;
+    let case = CaseFile::load(&path)?;
+    // Nothing elsewhere is looked at for a case of somebody else.
+    let of_files = if case.reach(&path).is_empty() { case.changes() } else { Vec::new() };
+    let own = CaseOnDisk::read(&path)?.change();
+    let changes: Vec<Change> = of_files.into_iter().chain(own).collect();
+    writeln!(console.out, "{}", shown_path(&path))?;
+    print_changes(console.out, &changes)?;
+    Ok(Verdict::from_problems(!changes.is_empty()))
 }
 
 fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
