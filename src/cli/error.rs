@@ -299,6 +299,20 @@ pub enum CliError {
         /// The axis.
         name: String,
     },
+    /// An axis is held at two places.
+    #[error("--set {name}: the axis is set twice; leave one of them out")]
+    AxisSetTwice {
+        /// The axis.
+        name: String,
+    },
+    /// An axis of a map is held.
+    #[error(
+        "--set {name}: the map goes over that axis; leave it out, or name another one for --x or --y"
+    )]
+    AxisOfMapSet {
+        /// The axis.
+        name: String,
+    },
     /// A value of an axis cannot be read.
     #[error("--set {name}: {text:?} cannot be read")]
     AxisValue {

@@ -228,6 +228,15 @@ fn mistakes_are_named() {
         (&["cell", "--set", "esc=2"][..], "0: without ESC, 1: with ESC"),
         (&["cell", "--set", "mass=2000"][..], "expected one of speed, closing, esc"),
         (&["slice", "--x", "speed", "--y", "speed"][..], "both name"),
+        // The last one of two values was taken, and one of an axis of the map left out.
+        (
+            &["cell", "--set", "speed=35mph", "--set", "speed=45mph"],
+            "--set speed: the axis is set twice",
+        ),
+        (
+            &["slice", "--x", "speed", "--y", "closing", "--set", "closing=1"],
+            "--set closing: the map goes over that axis",
+        ),
         (&["slice", "--x", "speed", "--y", "esc", "--outcome", "luck"][..], "turns_180"),
         (&["slice", "--x", "speed", "--y", "esc", "--out", "a.jpg"][..], ".png or .csv"),
         (&["sensitivity"][..], "no Sobol indices"),

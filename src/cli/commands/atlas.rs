@@ -221,7 +221,8 @@ impl HeldArgs {
     /// The bin of every axis.
     ///
     /// # Errors
-    /// [`CliError::NoAxis`], [`CliError::AxisValue`], [`CliError::OutsideAtlas`].
+    /// [`CliError::NoAxis`], [`CliError::AxisValue`], [`CliError::OutsideAtlas`],
+    /// [`CliError::AxisSetTwice`].
     pub(super) fn bins(&self, atlas: &Atlas) -> Result<Vec<Option<usize>>, CliError> {
         let mut bins = vec![None; atlas.axes.len()];
         for (name, text) in &self.set {
@@ -229,7 +230,9 @@ impl HeldArgs {
             let (Some(axis), Some(slot)) = (atlas.axes.get(idx), bins.get_mut(idx)) else {
                 continue;
             };
-            *slot = Some(bin_of(axis, text)?);
+            if slot.replace(bin_of(axis, text)?).is_some() {
+                return Err(CliError::AxisSetTwice { name: axis.word.clone() });
+            }
         }
         Ok(bins)
     }

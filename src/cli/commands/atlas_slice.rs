@@ -89,10 +89,10 @@ pub(super) fn run(
     if x == y {
         return Err(CliError::AxisTwice { name: args.x.clone() });
     }
-    let (measure, mut held) = (measure_of(&args.outcome)?, args.held.bins(atlas)?);
-    for axis in [x, y] {
-        if let Some(held) = held.get_mut(axis) {
-            *held = None;
+    let (measure, held) = (measure_of(&args.outcome)?, args.held.bins(atlas)?);
+    for (axis, name) in [(x, &args.x), (y, &args.y)] {
+        if held.get(axis).is_some_and(Option::is_some) {
+            return Err(CliError::AxisOfMapSet { name: name.clone() });
         }
     }
     let slice = atlas.slice(x, y, &held, measure);
