@@ -106,6 +106,12 @@ pub enum CliError {
     /// A steering-wheel angle that the road wheels cannot follow.
     #[error("the steering-wheel angle over the steering ratio is no angle of a road wheel")]
     SteeringWheel(#[from] OutOfRange),
+    /// A wheel that is locked or dragged at two places.
+    #[error("--locked and --dragged: {name} is given twice; give what holds it once")]
+    WheelTwice {
+        /// The wheel.
+        name: &'static str,
+    },
     /// A ground is given for a data set.
     #[error(
         "the cases of a trajectory data set are simulated on the road of their vehicle; leave out --site"

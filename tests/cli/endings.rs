@@ -307,6 +307,9 @@ fn an_ending_that_cannot_be_is_refused_by_its_name() {
         (&["--dragged", "rear-left"], "such as rear-left=0.5"),
         (&["--dragged", "rear-left=-1"], "drag is -1"),
         (&["--locked", "spare"], "rear-left"),
+        // Their drags were added.
+        (&["--dragged", "rear-left=0.5", "--dragged", "rear-left=1"], "rear-left is given twice"),
+        (&["--locked", "rear-left", "--dragged", "rear-left=0.5"], "rear-left is given twice"),
         (&["--engine-braking", "2g"], "engine braking is"),
         (&["--coast", "--brake", "0.5"], "cannot be used with"),
         (&["--brake-start", "1"], "--brake <SHARE>"),

@@ -4,11 +4,12 @@ use std::str::FromStr;
 
 use clap::{ArgGroup, Args};
 
+use crate::cli::CliError;
 use crate::cli::options::choices::{AXLES, Words, one_of};
 use crate::cli::options::quantity::{QuantityError, number};
 use impactlab_core::ranges::{
-    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, OutOfRange,
-    REACTION_TIME, STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE,
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, REACTION_TIME,
+    STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
 use impactlab_core::vehicle::{
     AntiLock, Braking, Countersteer, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving,
@@ -131,8 +132,9 @@ impl EndingArgs {
     /// The ending that the options say; `None` if they say none.
     ///
     /// # Errors
-    /// [`OutOfRange`] for a steering-wheel angle that no road wheel follows.
-    pub(in crate::cli) fn ending(&self) -> Result<Option<Ending>, OutOfRange> {
+    /// [`CliError::SteeringWheel`] for a steering-wheel angle that no road wheel follows,
+    /// [`CliError::WheelTwice`].
+    pub(in crate::cli) fn ending(&self) -> Result<Option<Ending>, CliError> {
         let of_wheel = self.steering_wheel.zip(self.steering_ratio);
         let road_wheel_rad = match of_wheel {
             Some((angle_rad, ratio)) => Some(STEER_ANGLE.check(angle_rad / ratio)?),
@@ -142,6 +144,16 @@ impl EndingArgs {
         let dragged = self.dragged.iter().map(|dragged| (dragged.wheel, Some(dragged.share)));
         let damaged =
             |(wheel, share)| DamagedWheel { wheel, start_s: 0.0, drag_share_of_friction: share };
+        let damage: Vec<DamagedWheel> = locked.chain(dragged).map(damaged).collect();
+        let is_twice =
+            |idx: usize, wheel: Wheel| damage.iter().take(idx).any(|it| it.wheel == wheel);
+        if let Some((_, twice)) =
+            damage.iter().enumerate().find(|(idx, it)| is_twice(*idx, it.wheel))
+        {
+            let word = WHEELS.iter().find(|(.., wheel)| *wheel == twice.wheel);
+            let name = word.map_or("a wheel", |(word, ..)| *word);
+            return Err(CliError::WheelTwice { name });
+        }
         let ending = Ending {
             brake: self.brake.map(|share_of_friction| {
                 let abs = self.abs.then(AntiLock::default);
@@ -159,7 +171,7 @@ impl EndingArgs {
                 start_s: self.drive_start,
                 rise_s: DEFAULT_BRAKE_RISE_S,
             }),
-            damage: locked.chain(dragged).map(damaged).collect(),
+            damage,
             steer: road_wheel_rad.map(|road_wheel_rad| HeldSteer {
                 start_s: self.steer_start,
                 rise_s: self.steer_rise,
