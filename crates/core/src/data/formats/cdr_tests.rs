@@ -22,7 +22,7 @@ fn the_table_before_the_crash_keeps_its_lines() {
     let said = table.said;
     assert_eq!(said.device, "Module 7");
     assert!(said.doubts[0].contains("complete file recorded: No"), "{:?}", said.doubts);
-    assert!(said.doubts[1].contains("no recorded data"), "{:?}", said.doubts);
+    assert!(said.doubts[1].contains("without recorded data"), "{:?}", said.doubts);
     assert!(said.description.contains("device: Module 7"), "{}", said.description);
     assert!(as_table(path, "t,fx\n0,1\n", &ReadSettings::default()).unwrap().is_none());
 }

@@ -6,13 +6,19 @@ use rayon::prelude::*;
 use crate::learning::FitSteps;
 use crate::nn::NnError;
 use crate::response::network::response_network::ResponseNetwork;
-use crate::response::population::distribution::{EVIDENCE_SHARE, LEARNED_STEPS, window_weights};
+use crate::response::population::distribution::{LEARNED_STEPS, window_weights};
 use crate::response::population::linearized::{
     Linearized, N_ROWS, PATHS_PER_LINEARIZATION, Predicted,
 };
 use crate::response::population::strengths::Evidence;
 use crate::response::{CarStrengths, N_EFFECTS, ResponseCase, StrengthPopulation, Widths};
 
+/// Steps of the windows by which the distribution over cars is found.
+pub(super) const FIT_WINDOW_STEPS: usize = 100;
+/// Share of what trajectories say of a car of the fit that counts: what the effects cannot explain is not
+/// independent from row to row, window to window and motion to motion. Chosen on coasting trajectories of
+/// twelve cars left out.
+const EVIDENCE_SHARE: f64 = 0.15;
 /// Linearisations of every trajectory, each about what the last one found, and iterations after each.
 const N_LINEARIZATIONS: usize = 2;
 const N_ITERATIONS: usize = 25;
@@ -119,7 +125,7 @@ impl StrengthPopulation {
                 car.linearized = car
                     .predicted
                     .par_iter()
-                    .map(|motion| motion.linearized(mean, LEARNED_STEPS))
+                    .map(|motion| motion.linearized(mean, LEARNED_STEPS, FIT_WINDOW_STEPS))
                     .collect();
                 if steps.advance(car.predicted.len() * PATHS_PER_LINEARIZATION).is_break() {
                     return Ok(None);

@@ -1,6 +1,6 @@
 //! How the path of a recorded motion changes with the strengths of the effects.
 //!
-//! A trajectory is cut into windows that each start from a recorded state: over a second or so the path
+//! A trajectory is cut into windows that each start from a recorded state: over a second or two the path
 //! depends on the strengths almost linearly, where over the whole motion a car that spins may turn
 //! once more or once less.
 //!
@@ -23,8 +23,6 @@ use crate::response::physics::step::StepModel;
 use crate::response::{N_EFFECTS, N_RESIDUAL, ResponseCase, STEP_S, average_error_m};
 use impactlab_core::vehicle::{VehicleInput, VehicleState};
 
-/// Steps of a window; the next one begins where it ends, so that nothing is counted twice.
-const WINDOW_STEPS: usize = 100;
 /// Numbers of a state that are compared.
 const N_OBSERVED: usize = 6;
 /// Instants of a window at which they are compared, as a share of the window.
@@ -121,14 +119,20 @@ impl<'a> Predicted<'a> {
     /// Linearises the trajectory.
     ///
     /// - `added`: d₀, `[N_EFFECTS]`;
-    /// - `last_step`: what comes after it is not looked at.
-    pub fn linearized(&self, added: &DVector<f64>, last_step: usize) -> Linearized {
+    /// - `last_step`: what comes after it is not looked at;
+    /// - `window_steps`: of a window; the next one begins where it ends, so that nothing is counted twice.
+    pub fn linearized(
+        &self,
+        added: &DVector<f64>,
+        last_step: usize,
+        window_steps: usize,
+    ) -> Linearized {
         let n = self.case.inputs.len().min(last_step);
-        let last_start = n.saturating_sub(WINDOW_STEPS);
-        let starts: Vec<usize> = (0..=last_start).step_by(WINDOW_STEPS).collect();
+        let last_start = n.saturating_sub(window_steps);
+        let starts: Vec<usize> = (0..=last_start).step_by(window_steps).collect();
         let windows: Vec<_> = starts
             .par_iter()
-            .map(|&start| self.window(added, [start, (start + WINDOW_STEPS).min(n)]))
+            .map(|&start| self.window(added, [start, (start + window_steps).min(n)]))
             .collect();
         let n_rows = windows.len() * N_ROWS;
         let mut target = DVector::zeros(n_rows);
