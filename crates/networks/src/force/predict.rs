@@ -32,6 +32,9 @@ pub struct ForcePrediction {
     pub mixture: CurveMixture,
     /// The part of it that the network has learned; `None` where it says nothing.
     pub learned: Option<CurveMixture>,
+    /// The part of it that is the physics alone; `None` where the network applies fully, and where the
+    /// vehicles do not approach each other.
+    pub bare: Option<CurveMixture>,
     /// The distribution under the condition that the vehicles hook, or that they do not, whichever is
     /// more likely. Point estimates are taken from it, since a mean over both kinds of collision would
     /// be similar to neither.
@@ -102,21 +105,25 @@ impl ForceModel {
                 let network = self.predict_by_network(&canonical, &variants)?;
                 let learned = Some(network.mixture.clone());
                 let bare = self.predict_by_physics(&canonical, &variants)?;
-                (network.mixed(applicability, &bare.0)?, learned, Some(bare.1))
+                let mixed = network.mixed(applicability, &bare.0)?;
+                (mixed, learned, Some((bare.0.mixture, bare.1)))
             }
             (false, false) => {
                 let (bare, is_approaching) = self.predict_by_physics(&canonical, &variants)?;
-                (bare, None, Some(is_approaching))
+                let mixture = bare.mixture.clone();
+                (bare, None, Some((mixture, is_approaching)))
             }
         };
         let outside = self.domain.outside(&canonical);
-        let mut caveats = caveats(applicability, &outside, bare);
+        let is_approaching = bare.as_ref().map(|(_, is_approaching)| *is_approaching);
+        let mut caveats = caveats(applicability, &outside, is_approaching);
         caveats.extend(self.caveats_of_bodies(&canonical));
         let turned = |mixture: CurveMixture| if mirrored { mixture.mirrored() } else { mixture };
         let [px, py] = prediction.momentum_impulse_n_s;
         Ok(ForcePrediction {
             mixture: turned(prediction.mixture),
             learned: learned.map(turned),
+            bare: bare.filter(|(_, is_approaching)| *is_approaching).map(|bare| turned(bare.0)),
             likely: turned(prediction.likely),
             centre: if mirrored { prediction.centre.mirrored() } else { prediction.centre },
             momentum_impulse_n_s: [px, if mirrored { -py } else { py }],

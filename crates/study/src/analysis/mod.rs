@@ -56,7 +56,9 @@ pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
-pub use pair_forecast::{BothVehicles, BothVehiclesQuestion, FirstForces, forecast_both};
+pub use pair_forecast::{
+    BothVehicles, BothVehiclesQuestion, FirstContact, FirstForces, forecast_both,
+};
 pub use pair_row::{PairRow, PairRowError, PairRowQuestion, pair_row};
 pub use recorded_pair::analyse_recorded_pair;
 pub use rest_outcome::{MotionEnd, RestOutcome};

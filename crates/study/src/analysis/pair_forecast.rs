@@ -1,7 +1,8 @@
 //! Forecast of both vehicles through all contacts: whole draws of what is not known of them.
 //!
-//! A draw takes the first contact from the force network or from the contact law, so often as the network
-//! applies and does not; later contacts are those of the law. Both vehicles are followed together, so
+//! A draw takes the first contact from the force network as often as that applies, else from the contact law
+//! or, where that was hardly tried, in every other draw from the momentum solution; later contacts are those
+//! of the law. Both vehicles are followed together, so
 //! that their motions, contacts and courses of events belong to each other.
 
 use rayon::prelude::*;
@@ -34,13 +35,39 @@ use impactlab_networks::response::{
 /// By how much the seed of the striking vehicle differs.
 pub(super) const SEED_OF_STRIKING: u64 = 0x9e37_79b9_7f4a_7c15;
 
+/// Where the force of the first contact of a draw comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FirstContact {
+    /// The contact law.
+    Law,
+    /// A curve of the force network.
+    Network(ForceHistory),
+    /// The momentum solution as a pulse, with a draw of its errors.
+    Momentum(ForceHistory),
+}
+
+impl FirstContact {
+    /// The force on the struck vehicle; `None` where it follows from the contact law.
+    pub fn force(&self) -> Option<&ForceHistory> {
+        match self {
+            Self::Law => None,
+            Self::Network(force) | Self::Momentum(force) => Some(force),
+        }
+    }
+
+    /// The force, if it is that of the force network.
+    pub fn network_force(&self) -> Option<&ForceHistory> {
+        self.force().filter(|_| matches!(self, Self::Network(_)))
+    }
+}
+
 /// The forces of the first contact, of which each draw takes one in turn.
 #[derive(Debug, Clone)]
 pub struct FirstForces {
     /// With everything at its median; the contact law from the start on where there is none.
     pub median: Option<ForceHistory>,
     /// Of the draws.
-    pub draws: Vec<Option<ForceHistory>>,
+    pub draws: Vec<FirstContact>,
     /// What the force network says, where it was asked.
     pub prediction: Option<ForcePrediction>,
 }
@@ -117,8 +144,8 @@ pub fn forecast_both(
     let BothVehiclesQuestion { pair, vehicles, first_forces, .. } = *question;
     let range = if settings.until_rest { REST_LIMIT } else { FORECAST_DURATION };
     let duration_s = range.check(settings.duration_s)?;
-    let known = first_forces.draws.iter().chain([&first_forces.median]).flatten();
-    for force in known {
+    let drawn_forces = first_forces.draws.iter().filter_map(FirstContact::force);
+    for force in drawn_forces.chain(&first_forces.median) {
         check_contact_within(force, duration_s)?;
     }
     let n_draws = settings.n_curves.max(1);
@@ -128,7 +155,7 @@ pub fn forecast_both(
     let loads: Vec<Option<ContactLoad>> = first_forces
         .draws
         .iter()
-        .map(|force| force.as_ref().map(|force| vehicles[0].load(force)))
+        .map(|first| first.force().map(|force| vehicles[0].load(force)))
         .collect();
     let question_of_pair = PairQuestion {
         vehicles: vehicles.map(|it| &it.vehicle),
@@ -167,7 +194,7 @@ pub fn forecast_both(
         courses: found.courses(),
         contacts: ContactsOutcome::new(&found, duration_s),
     };
-    let forces = first_forces.draws.iter().flatten().cloned();
+    let forces = first_forces.draws.iter().filter_map(FirstContact::network_force).cloned();
     let forces = if first_forces.draws.is_empty() {
         first_forces.median.iter().cloned().collect()
     } else {

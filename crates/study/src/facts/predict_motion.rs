@@ -189,6 +189,10 @@ impl PredictMotionReport {
                 None => Fact::new(Term::MovedBy, Value::Term(Term::GivenForce)),
             },
         ];
+        let n_pulses = self.n_momentum_pulses();
+        if n_pulses > 0 {
+            facts.push(Fact::new(Term::PulsesDrawn, Value::Count(n_pulses)));
+        }
         facts.extend(self.force.clone().map(|path| Fact::new(Term::ForceFile, Value::File(path))));
         if self.n_vehicles > 0 {
             facts.push(Fact::new(Term::VehiclesDrawn, Value::Count(self.n_vehicles)));

@@ -99,6 +99,8 @@ terms! {
     MovedFirstBy: "the force of the first contact is that of", "die Kraft des ersten Kontakts folgt";
     ForceNetwork: "the force network", "dem Kraftnetz";
     ContactLaw: "the contact law", "dem Kontaktgesetz";
+    LawAndMomentum: "the contact law and the momentum solution, half of the draws each",
+        "je zur Hälfte der Ziehungen dem Kontaktgesetz und der Impulslösung";
     MomentumSolution: "the momentum solution", "der Impulslösung";
     ImpulsesVerdict: "the impulses of force network and momentum solution",
         "die Impulse von Kraftnetz und Impulslösung";
@@ -363,6 +365,8 @@ terms! {
     MovedBy: "moved by", "bewegt durch";
     GivenForce: "the force as given, in one course", "die Kraft wie angegeben, in einem Verlauf";
     ForcesDrawn: "forces drawn from the force network", "aus dem Kraftnetz gezogene Kräfte";
+    PulsesDrawn: "impulses drawn from the momentum solution, with its measured errors",
+        "aus der Impulslösung mit ihren gemessenen Fehlern gezogene Impulse";
     StillMovingAfter: "still moving after", "noch in Bewegung nach";
     HeadingChange: "change of heading", "Änderung des Gierwinkels",
         "Since the impact, to the left; goes on beyond a turn";

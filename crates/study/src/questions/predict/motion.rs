@@ -316,19 +316,23 @@ impl Question for PredictMotionRequest {
         caveats.extend(open_drivers(&self.motion)?);
         caveats.extend(self.contact_caveats(&forecast)?);
         let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.caveats);
+        let of_forecast = self.report(&analysis, struck, &forecast);
+        let has_pulses = of_forecast.n_momentum_pulses() > 0;
         let predicted = match &forecast.both {
-            Some(_) => with_contact_law(predicted),
+            Some(_) => with_contact_law(predicted, has_pulses),
             None => predicted.to_vec(),
         };
+        // What half of the draws follow is no other method.
+        let rival = Rival::from_simulation(&forecast, &analysis, self.rival_force());
         let report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             impulses: beside.rival,
             recorded: self.recorded(&analysis, struck, &forecast),
-            rival: Rival::from_simulation(&forecast, &analysis, self.rival_force()),
+            rival: rival.filter(|_| !has_pulses),
             places: self.places(&forecast, &analysis, &mut caveats)?,
             tried_motion: self.tried_motion(struck, follows_both)?,
-            ..self.report(&analysis, struck, &forecast)
+            ..of_forecast
         };
         caveats.extend(restrictions::predicted_motion_caveats(&report, &predicted));
         caveats.extend(noted.of_force);
