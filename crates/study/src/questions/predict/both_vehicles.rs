@@ -4,6 +4,7 @@ use crate::analysis::{
     Analysis, BothVehiclesQuestion, ContactPair, FirstContact, FirstForces, MotionForecast,
     MotionForecastSettings, PlaceChance, StruckVehicle, forecast_both, in_world, place_chances,
 };
+use crate::caveats::covered::covered_part;
 use crate::caveats::unused::{by_force_network, drawn_drivers, lanes_by_network};
 use crate::questions::predict::motion::Noted;
 use crate::questions::predict::one_vehicle::given_force;
@@ -201,6 +202,9 @@ impl PredictMotionRequest {
             })?;
         let heading_rad = struck.initial.yaw_rad;
         let has_pulses = !collision.is_push_on_flank();
+        if let (MotionSource::Scenario { scenario, .. }, true) = (&self.motion.source, has_pulses) {
+            caveats.extend(covered_part(&scenario.load()?));
+        }
         let settings = (self.draws, self.seed);
         let forces = FirstForces::predicted(prediction, has_pulses, heading_rad, settings);
         Ok(Outcome::Complete(forces))
