@@ -16,7 +16,7 @@ use impactlab_core::data::{ForceHistory, Outcome};
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture, ForceCurve};
 use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_networks::force::{ForcePrediction, ForceScenario, SHARE_OF_NETWORK};
 use impactlab_networks::response::ResponseModel;
@@ -251,7 +251,7 @@ impl FirstForces {
                 }
                 is_pulse = !is_pulse;
                 let pulse = if is_pulse { pulses.next() } else { None };
-                let pulse = pulse.map(|pulse| in_world(pulse, heading_rad));
+                let pulse = pulse.map(|pulse| in_world(&ended(pulse), heading_rad));
                 pulse.map_or(FirstContact::Law, FirstContact::Momentum)
             })
             .collect();
@@ -259,6 +259,19 @@ impl FirstForces {
         let median = likely.map(|_| in_world(&prediction.likely.mean(), heading_rad));
         Self { median, draws, prediction: Some(prediction) }
     }
+}
+
+/// A pulse without the ripple that is drawn after its end: as long as a known force lasts, the contact law
+/// does nothing.
+fn ended(pulse: &ForceCurve) -> ForceCurve {
+    let mut ended = pulse.clone();
+    let forces = ended.fx_n.iter_mut().zip(&mut ended.fy_n);
+    for (time_s, (fx_n, fy_n)) in pulse.time_s().into_iter().zip(forces) {
+        if time_s > pulse.duration_s {
+            (*fx_n, *fy_n) = (0.0, 0.0);
+        }
+    }
+    ended
 }
 
 /// What restricts a predicted force where the contact law stands for what the network does not say.
@@ -316,6 +329,16 @@ fn shared_text(share: f64) -> Phrase {
 mod tests {
     use super::*;
     use impactlab_core::collision::{ContactLocation, Scenario, Side};
+
+    /// A ripple of 1.3 % of the peak counted as contact up to the end of the grid, at 0.25 s.
+    #[test]
+    fn a_drawn_pulse_ends_with_its_duration() {
+        let fx_n = vec![0.0, 3e3, 1e3, 40.0, -40.0];
+        let pulse = ForceCurve { fx_n, fy_n: vec![10.0; 5], duration_s: 0.003 };
+        let ended = ended(&pulse);
+        assert_eq!(ended.fx_n, [0.0, 3e3, 1e3, 0.0, 0.0]);
+        assert_eq!(ended.fy_n, [10.0, 10.0, 10.0, 0.0, 0.0]);
+    }
 
     /// T-bone, rear-end and frontal collisions were told how often regions had held of PITs.
     #[test]
