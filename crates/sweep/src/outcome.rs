@@ -6,8 +6,8 @@
 use std::f64::consts::PI;
 
 use impactlab_core::collision::Pose;
-use impactlab_core::numerics::wrap_angle_rad;
-use impactlab_networks::pair::{Course, HALF_TURN_RAD, QUARTER_TURN_RAD};
+use impactlab_core::numerics::{is_half_turn, is_quarter_turn, wrap_angle_rad};
+use impactlab_networks::pair::Course;
 use impactlab_networks::response::STEP_S;
 use impactlab_study::analysis::PairRow;
 
@@ -153,8 +153,8 @@ impl Outcome {
         let flag = |holds: bool| f64::from(u8::from(holds));
         match self {
             Self::TurnRad => path.turn_rad,
-            Self::Turns90 => flag(path.turn_rad.abs() >= QUARTER_TURN_RAD),
-            Self::Turns180 => flag(path.turn_rad.abs() >= HALF_TURN_RAD),
+            Self::Turns90 => flag(is_quarter_turn(path.turn_rad)),
+            Self::Turns180 => flag(is_half_turn(path.turn_rad)),
             Self::Recovers => flag(draw.course() == Course::Recovers),
             Self::AcrossLane => flag(is_across(row)),
             Self::DoorContact => flag(row.is_door_dented),
@@ -215,7 +215,7 @@ impl StruckPath {
             if turn_rad.abs() > path.turn_rad.abs() {
                 path.turn_rad = turn_rad;
             }
-            if turn_rad.abs() >= HALF_TURN_RAD && path.speed_backwards_m_s.is_nan() {
+            if is_half_turn(turn_rad) && path.speed_backwards_m_s.is_nan() {
                 path.speed_backwards_m_s = state.vx_body_m_s.hypot(state.vy_body_m_s);
             }
             if rest == Some(i) {
@@ -249,6 +249,7 @@ mod tests {
 
     use super::*;
     use impactlab_core::collision::Footprint;
+    use impactlab_core::collision::contact::{ContactPhase, PhaseOfVehicle};
     use impactlab_core::vehicle::VehicleState;
     use impactlab_networks::pair::PairDraw;
 
@@ -298,6 +299,38 @@ mod tests {
         assert_eq!(value(Outcome::SpeedBackwardsMS), 8.0);
         assert_eq!([Outcome::DoorContact, Outcome::WheelLift].map(value), [1.0, 0.0]);
         assert_eq!(value(Outcome::ForceApplies), 0.25);
+    }
+
+    /// A row said of just 90° that the car turned by a quarter, and the course of events that it did not.
+    #[test]
+    fn a_turn_of_just_a_quarter_or_half_is_one_in_the_row_and_in_the_course() {
+        let of_vehicle = PhaseOfVehicle {
+            impulse_body_n_s: [0.0; 2],
+            yaw_impulse_n_m_s: 0.0,
+            delta_v_m_s: 0.0,
+            principal_direction: None,
+        };
+        let let_go = ContactPhase {
+            start_s: 0.0,
+            end_s: Some(0.1),
+            impulse_world_n_s: [0.0; 2],
+            peak_force_n: 0.0,
+            vehicles: [of_vehicle; 2],
+        };
+        for (turn_rad, expected, course) in [
+            (FRAC_PI_2, [1.0, 0.0, 0.0], Course::Turns),
+            (-FRAC_PI_2, [1.0, 0.0, 0.0], Course::Turns),
+            (PI, [1.0, 1.0, 0.0], Course::Spins),
+            (1.5, [0.0, 0.0, 1.0], Course::Recovers),
+        ] {
+            let struck = vec![state(0.0, 0.0, 0.0, 20.0), state(9.0, 0.0, turn_rad, 0.0)];
+            let mut row = row(struck, vec![state(1.0, -5.0, 0.0, 20.0); 2]);
+            row.draw.phases = vec![let_go];
+            let values = outcomes(&row);
+            let counted = [Outcome::Turns90, Outcome::Turns180, Outcome::Recovers]
+                .map(|outcome| values[outcome as usize]);
+            assert_eq!((counted, row.draw.course()), (expected, course), "{turn_rad} rad");
+        }
     }
 
     #[test]

@@ -12,9 +12,6 @@ use crate::vehicle::VehicleParameters;
 /// Times after the start at which the position error is reported, s.
 pub const HORIZONS_S: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// Change of yaw beyond which a motion counts as a spin, rad, as in the trajectory data sets.
-pub const SPIN_YAW_CHANGE_RAD: f64 = std::f64::consts::FRAC_PI_2;
-
 /// Errors of a predicted motion against a reference, evaluated at the reference's samples. JSON has
 /// `null` for an error that is not finite, which that of a model whose motion diverges is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,9 +5,7 @@ mod metrics;
 mod pairs;
 mod replay;
 
-pub use metrics::{
-    HORIZONS_S, MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
-};
+pub use metrics::{HORIZONS_S, MotionError, largest_yaw_change_rad, physical_violations};
 pub use pairs::{PairAttributes, PairCase, PairCaseError, PairRecords, RecordedContact};
 pub use replay::{
     DatasetReplay, ErrorSummary, Replay, ReplayError, initial_state, recorded_manoeuvre,

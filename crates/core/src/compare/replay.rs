@@ -6,15 +6,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::collision::{Footprint, OffOutline};
-use crate::compare::{
-    MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
-};
+use crate::compare::{MotionError, largest_yaw_change_rad, physical_violations};
 use crate::data::{
     Case, CaseBraking, CaseSteering, Channel, DataError, Outcome, SeriesError, TIME_TOLERANCE_S,
     TimeSeries, TrajectoryAttributes,
 };
 use crate::jobs::{Progress, ProgressCallback};
-use crate::numerics::Summary;
+use crate::numerics::{Summary, is_quarter_turn};
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Motion, OUTPUT_INTERVAL_S,
     SimulationError, SimulationRun, SteerHistory, VehicleParameters, VehicleState, WheelEffort,
@@ -33,7 +31,7 @@ pub struct Replay {
     pub motion: Motion,
     /// Errors of the simulated motion against the recorded one.
     pub error: MotionError,
-    /// Whether the recorded motion is a spin: its yaw changes by more than [`SPIN_YAW_CHANGE_RAD`].
+    /// Whether the recorded motion is a spin: its yaw changes by a quarter turn or more.
     pub spin: bool,
     /// Number of samples after which the simulated kinetic energy grows without a force, see
     /// [`physical_violations`].
@@ -223,7 +221,7 @@ fn compared(
     let motion =
         motion.map_err(|source| ReplayError::Simulation { case: case.name.clone(), source })?;
     let error = MotionError::between(&motion.series, &case.series).map_err(in_case)?;
-    let spin = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
+    let spin = is_quarter_turn(largest_yaw_change_rad(&case.series).map_err(in_case)?);
     let violations = physical_violations(&motion.series, vehicle).map_err(in_case)?;
     Ok(Replay { case: case.name.clone(), motion, error, spin, violations })
 }

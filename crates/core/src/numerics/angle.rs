@@ -1,6 +1,16 @@
 //! Angles in the plane.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Whether a change of heading to either side is a quarter turn or more, which is a spin.
+pub fn is_quarter_turn(turn_rad: f64) -> bool {
+    turn_rad.abs() >= FRAC_PI_2
+}
+
+/// Whether a change of heading to either side is a half turn or more: the vehicle faces backwards.
+pub fn is_half_turn(turn_rad: f64) -> bool {
+    turn_rad.abs() >= PI
+}
 
 /// The angle in (−π, π] rad that differs from `angle_rad` by whole turns.
 pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
@@ -50,6 +60,22 @@ pub fn unwrapped_rad(angles_rad: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_turn_of_just_90_or_180_degrees_counts_to_either_side() {
+        for (turn_deg, expected) in [
+            (89.9, [false, false]),
+            (90.0, [true, false]),
+            (179.9, [true, false]),
+            (180.0, [true, true]),
+            (f64::NAN, [false, false]),
+        ] {
+            for turn_rad in [turn_deg, -turn_deg].map(f64::to_radians) {
+                let counted = [is_quarter_turn(turn_rad), is_half_turn(turn_rad)];
+                assert_eq!(counted, expected, "{turn_deg}°");
+            }
+        }
+    }
 
     #[test]
     fn turns_are_counted_where_the_recorder_did_not() {

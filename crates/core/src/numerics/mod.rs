@@ -20,7 +20,9 @@ mod seed;
 mod smoother;
 mod statistics;
 
-pub use angle::{continued_rad, counted_turns_rad, unwrapped_rad, wrap_angle_rad};
+pub use angle::{
+    continued_rad, counted_turns_rad, is_half_turn, is_quarter_turn, unwrapped_rad, wrap_angle_rad,
+};
 pub use clustering::{ClusterError, Clusters};
 pub use four::Four;
 pub use gaussian_process::{

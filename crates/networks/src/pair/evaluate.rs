@@ -3,11 +3,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::pair::outcome::{HALF_TURN_RAD, QUARTER_TURN_RAD};
 use crate::pair::{CourseShare, PairDraw, PairForecast};
 use impactlab_core::compare::PairCase;
 use impactlab_core::data::{Channel, SeriesError, TimeSeries};
-use impactlab_core::numerics::{Summary, interpolate, wrap_angle_rad};
+use impactlab_core::numerics::{
+    Summary, interpolate, is_half_turn, is_quarter_turn, wrap_angle_rad,
+};
 use impactlab_core::vehicle::OUTPUT_INTERVAL_S;
 
 /// Time after the first contact over which paths are compared, s.
@@ -58,7 +59,7 @@ pub struct VehicleScore {
     pub end_error_m: f64,
     /// Difference of the headings at the end of the record, wrapped, rad, likewise.
     pub end_heading_error_rad: f64,
-    /// Probability that the vehicle turns by more than 90°.
+    /// Probability that the vehicle turns by 90° or more.
     pub quarter_turn_probability: f64,
     /// Whether the recorded vehicle did.
     pub quarter_turn_recorded: bool,
@@ -228,16 +229,17 @@ fn vehicle_score(
     let end_level = level(end_s);
     let end = centre.state(vehicle, instant(end_s));
     let turn_rad = record.largest_turn_rad();
-    let turns = |limit: f64| forecast.share(|draw| draw.largest_turn_rad(vehicle) > limit);
+    let turns =
+        |counts: fn(f64) -> bool| forecast.share(|draw| counts(draw.largest_turn_rad(vehicle)));
     VehicleScore {
         average_error_m: distances.iter().sum::<f64>() / distances.len().max(1) as f64,
         end_error_m: off(end_s),
         end_heading_error_rad: end
             .map_or(f64::NAN, |state| wrap_angle_rad(state.yaw_rad - record.at(end_s)[2])),
-        quarter_turn_probability: turns(QUARTER_TURN_RAD),
-        quarter_turn_recorded: turn_rad > QUARTER_TURN_RAD,
-        half_turn_probability: turns(HALF_TURN_RAD),
-        half_turn_recorded: turn_rad > HALF_TURN_RAD,
+        quarter_turn_probability: turns(is_quarter_turn),
+        quarter_turn_recorded: is_quarter_turn(turn_rad),
+        half_turn_probability: turns(is_half_turn),
+        half_turn_recorded: is_half_turn(turn_rad),
         path_50: within(0.5),
         path_90: within(0.9),
         end_50: end_level <= 0.5,

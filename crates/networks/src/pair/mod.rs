@@ -23,7 +23,7 @@ pub use evaluate::{
 pub use forecast::{
     DrawnVehicle, PairDraw, PairForecast, PairQuestion, PairSettings, forecast_pair,
 };
-pub use outcome::{Course, CourseShare, HALF_TURN_RAD, QUARTER_TURN_RAD};
+pub use outcome::{Course, CourseShare};
 pub use scatter::PairScatter;
 pub use twins::{
     ByControl, EvaluatedTwins, RecordedAndForecast, SavedCounts, TwinOutcome, TwinSummary,

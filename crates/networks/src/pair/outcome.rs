@@ -7,14 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::pair::{PairDraw, PairForecast};
 use impactlab_core::collision::contact::ContactPhase;
-use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::numerics::{is_half_turn, is_quarter_turn, wrap_angle_rad};
 use impactlab_core::uncertainty::PlanarMixture;
-
-/// Turn from which on a vehicle has spun, rad: a quarter.
-pub const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
-
-/// Turn from which on a vehicle faces backwards, rad: a half.
-pub const HALF_TURN_RAD: f64 = std::f64::consts::PI;
 
 /// What becomes of the struck vehicle.
 #[derive(
@@ -30,9 +24,9 @@ pub enum Course {
     Hooked,
     /// It turns by less than a quarter.
     Recovers,
-    /// It turns by a quarter to a half.
+    /// It turns by a quarter or more, and by less than a half.
     Turns,
-    /// It turns by more than a half.
+    /// It turns by a half or more.
     Spins,
 }
 
@@ -87,8 +81,8 @@ impl PairDraw {
                 true => Course::Across,
                 false => Course::Hooked,
             },
-            turn if turn > HALF_TURN_RAD => Course::Spins,
-            turn if turn > QUARTER_TURN_RAD => Course::Turns,
+            turn if is_half_turn(turn) => Course::Spins,
+            turn if is_quarter_turn(turn) => Course::Turns,
             _ => Course::Recovers,
         }
     }

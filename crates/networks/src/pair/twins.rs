@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::pair::PairForecast;
 use crate::pair::evaluate::median;
-use crate::pair::outcome::QUARTER_TURN_RAD;
 use impactlab_core::compare::{PairCase, largest_yaw_change_rad};
 use impactlab_core::data::SeriesError;
+use impactlab_core::numerics::is_quarter_turn;
 
 /// The same of a vehicle without and with stability control.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -26,7 +26,7 @@ pub struct TwinOutcome {
     pub recorded_turn_rad: f64,
     /// Median over the draws of the largest turn, rad.
     pub forecast_turn_rad: f64,
-    /// Probability that the vehicle turns by more than 90°.
+    /// Probability that the vehicle turns by 90° or more.
     pub quarter_turn_probability: f64,
 }
 
@@ -37,9 +37,9 @@ pub struct EvaluatedTwins {
     pub cases: ByControl<String>,
     /// What becomes of them.
     pub outcomes: ByControl<TwinOutcome>,
-    /// Whether stability control saved the recorded vehicle: it turns by more than 90° without it alone.
+    /// Whether stability control saved the recorded vehicle: it turns by 90° or more without it alone.
     pub saved_recorded: bool,
-    /// Whether it is likelier than not to turn by more than 90° without stability control and not so with it.
+    /// Whether it is likelier than not to turn by 90° or more without stability control and not so with it.
     pub saved_forecast: bool,
 }
 
@@ -52,7 +52,7 @@ pub struct TwinSummary {
     pub n_right: usize,
     /// The same for each case.
     pub saved: SavedCounts,
-    /// Vehicles that turn by more than 90°.
+    /// Vehicles that turn by 90° or more.
     pub quarter_turns: ByControl<RecordedAndForecast>,
 }
 
@@ -89,14 +89,14 @@ impl TwinOutcome {
             recorded_turn_rad: largest_yaw_change_rad(&case.motions[0])?,
             forecast_turn_rad: median(turns.collect()).unwrap_or(0.0),
             quarter_turn_probability: forecast
-                .share(|draw| draw.largest_turn_rad(0) > QUARTER_TURN_RAD),
+                .share(|draw| is_quarter_turn(draw.largest_turn_rad(0))),
         })
     }
 
-    /// Whether the recorded vehicle turns by more than 90°, and whether the forecast one does likelier than
+    /// Whether the recorded vehicle turns by 90° or more, and whether the forecast one does likelier than
     /// not.
     pub fn quarter_turns(&self) -> [bool; 2] {
-        [self.recorded_turn_rad > QUARTER_TURN_RAD, self.quarter_turn_probability > 0.5]
+        [is_quarter_turn(self.recorded_turn_rad), self.quarter_turn_probability > 0.5]
     }
 }
 

@@ -24,10 +24,10 @@ use serde::Serialize;
 use crate::Cars;
 use crate::evidence::{After, Evidence, Mark, MarkKind, Measured, RestPose, YesNoUnknown, ends};
 use crate::hand::momentum::{LEAST_ANGLE_RAD, speed_in_line, speeds_at_angles};
-use crate::hand::slide::{LEAST_SPIN_RAD, SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
+use crate::hand::slide::{SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
 use crate::single_car::StartPlace;
 use impactlab_core::collision::Side;
-use impactlab_core::numerics::{line_length, wrap_angle_rad};
+use impactlab_core::numerics::{is_quarter_turn, line_length, wrap_angle_rad};
 use impactlab_core::vehicle::{FrictionZone, Wheel};
 
 /// Relative scatter of the friction of the road as the drag factor of a car.
@@ -213,7 +213,7 @@ fn drag(
         return locked.map(|drag| (drag, "distance to rest; the brakes locked all wheels at once"));
     }
     let turned = rest.heading().map(|heading| wrap_angle_rad(heading.value).abs());
-    let has_spun = turned.is_some_and(|turned| turned > LEAST_SPIN_RAD);
+    let has_spun = turned.is_some_and(is_quarter_turn);
     let turns = after.driver_braked == YesNoUnknown::No && is_free(after);
     (which == Which::Struck && has_spun && turns).then_some(())?;
     let road = friction?;

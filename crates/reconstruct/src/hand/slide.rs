@@ -15,6 +15,7 @@ use crate::hand::HandField;
 use crate::hand::method::{Formula, HandOutput, accept, violated};
 use crate::hand::values::HandValues;
 use impactlab_core::bibliography::Brach2011;
+use impactlab_core::numerics::is_quarter_turn;
 use impactlab_core::ranges::{
     EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_SHARE, HAND_DISTANCE, HAND_GRADE, ROAD_FRICTION,
 };
@@ -24,8 +25,6 @@ use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2
 pub(super) const SPIN_DRAG: f64 = 0.5;
 /// Standard deviation of the same.
 pub(super) const SPIN_DRAG_SIGMA: f64 = 0.15;
-/// Turn until rest from which on a car has spun, rad: 90°.
-pub(super) const LEAST_SPIN_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
 /// Standard deviation of a distance where none is stated, m.
 const DISTANCE_SIGMA_M: f64 = 0.5;
@@ -193,7 +192,7 @@ fn warn_spin(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
          schleuderndes",
     );
     let angle = PhraseValue::fixed(Quantity::Angle, turn, 0).in_unit("deg");
-    violated([(turn < LEAST_SPIN_RAD, straight.with(angle)), no_drag(outputs)])
+    violated([(!is_quarter_turn(turn), straight.with(angle)), no_drag(outputs)])
 }
 
 fn warn_skid(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {

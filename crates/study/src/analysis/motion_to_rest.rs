@@ -3,12 +3,11 @@
 //!
 //! The distribution over time is that of the draws. A vehicle that has come to rest stays there.
 
-use std::f64::consts::{FRAC_PI_2, PI};
-
 use rayon::prelude::*;
 
 use crate::analysis::{MonteCarloError, MotionEnd, MotionOutcome, RestOutcome, StruckVehicle};
 use impactlab_core::data::ForceHistory;
+use impactlab_core::numerics::{is_half_turn, is_quarter_turn};
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::VehicleState;
 use impactlab_networks::response::{
@@ -167,8 +166,8 @@ fn outcome(
     start_rad: f64,
 ) -> MotionOutcome {
     let turned: Vec<f64> = ends.iter().map(|end| end.yaw_rad - start_rad).collect();
-    let share_of = |least_rad: f64| {
-        turned.iter().filter(|rad| rad.abs() >= least_rad).count() as f64 / turned.len() as f64
+    let share_of = |counts: fn(f64) -> bool| {
+        turned.iter().filter(|rad| counts(**rad)).count() as f64 / turned.len() as f64
     };
     let mean = |quantity: fn(&MotionEnd) -> f64| {
         ends.iter().map(quantity).sum::<f64>() / ends.len() as f64
@@ -183,8 +182,8 @@ fn outcome(
         is_at_rest,
         x_m: rest.x_m.clone(),
         y_m: rest.y_m.clone(),
-        p_quarter_turn: share_of(FRAC_PI_2),
-        p_half_turn: share_of(PI),
+        p_quarter_turn: share_of(is_quarter_turn),
+        p_half_turn: share_of(is_half_turn),
         heading_change_rad: Estimate::from_draws(turned),
         speed_m_s: mean(|end| end.speed_m_s),
         yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s),

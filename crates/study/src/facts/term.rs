@@ -564,7 +564,7 @@ terms! {
     ForecastTurnWith: "turn with, median", "Drehung mit, Median";
     QuarterTurnChanceWith: "over 90° with", "über 90° mit", "Probability";
     SavedRecorded: "effect, recorded", "Wirkung, aufgezeichnet",
-        "Saved: the vehicle turns by more than 90° without stability control alone";
+        "Saved: the vehicle turns by 90° or more without stability control alone";
     SavedForecast: "effect, forecast", "Wirkung, vorhergesagt";
     Saved: "saved", "gerettet";
     NotSaved: "not saved", "nicht gerettet";

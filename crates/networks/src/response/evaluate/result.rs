@@ -96,7 +96,7 @@ pub struct TestCase {
     pub name: String,
     /// Its cluster by impulse.
     pub cluster: usize,
-    /// Whether it turns by more than 90°.
+    /// Whether it turns by 90° or more.
     pub spins: bool,
     /// Outline of the vehicle.
     pub footprint: Footprint,

@@ -6,15 +6,13 @@ use crate::learning::{
     LoadError, TrainingCase, cases_and_problems, content_digest, load_cases, load_dataset, n_steps,
 };
 use crate::response::{ImpactRecord, STEP_S};
-use impactlab_core::compare::{
-    ReplayError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, recorded_manoeuvre,
-};
+use impactlab_core::compare::{ReplayError, largest_yaw_change_rad, recorded_manoeuvre};
 use impactlab_core::data::{
     Case, Channel, Dataset, DatasetKind, ForceAxes, ForceHistory, Outcome, Sampling, SeriesError,
     TimeSeries, TrajectoryAttributes,
 };
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_core::numerics::interpolate;
+use impactlab_core::numerics::{interpolate, is_quarter_turn};
 use impactlab_core::ranges::SIMULATED_DURATION;
 use impactlab_core::vehicle::{VehicleInput, VehicleParameters, VehicleState};
 
@@ -32,7 +30,7 @@ pub struct ResponseCase {
     pub states: Vec<VehicleState<f64>>,
     /// Input over each step: one fewer than states.
     pub inputs: Vec<VehicleInput<f64>>,
-    /// Whether the vehicle turns by more than 90°.
+    /// Whether the vehicle turns by 90° or more.
     pub spins: bool,
     /// SHA-256 in hex of states and forces: the same for the same content under another name.
     pub digest: String,
@@ -102,7 +100,7 @@ impl ResponseCase {
             return Err(ResponseCaseError::TooShort { case: case.name.clone(), n_samples, least });
         }
         let inputs = manoeuvre.inputs(STEP_S, states.len() - 1);
-        let spins = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
+        let spins = is_quarter_turn(largest_yaw_change_rad(&case.series).map_err(in_case)?);
         let vehicle = vehicle.clone().with_friction(friction);
         Ok(Self { spins, ..Self::from_motion(case.name.clone(), vehicle, states, inputs) })
     }
@@ -118,8 +116,7 @@ impl ResponseCase {
         inputs: Vec<VehicleInput<f64>>,
     ) -> Self {
         let first_rad = states.first().map_or(0.0, |state| state.yaw_rad);
-        let turns =
-            |state: &VehicleState<f64>| (state.yaw_rad - first_rad).abs() > SPIN_YAW_CHANGE_RAD;
+        let turns = |state: &VehicleState<f64>| is_quarter_turn(state.yaw_rad - first_rad);
         let (spins, digest) = (states.iter().any(turns), digest(&states, &inputs));
         Self { name, vehicle, states, inputs, spins, digest }
     }

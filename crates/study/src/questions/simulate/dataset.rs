@@ -58,7 +58,7 @@ pub struct SimulateDatasetReport {
     pub cases: Vec<ReplayedCaseReport>,
     /// The struck vehicle over all cases.
     pub overall: Option<ErrorSummary>,
-    /// Over cases that turn by more than 90°.
+    /// Over cases that turn by 90° or more.
     pub spinning: Option<ErrorSummary>,
     /// Over the other cases.
     pub not_spinning: Option<ErrorSummary>,

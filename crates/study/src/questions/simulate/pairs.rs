@@ -13,12 +13,12 @@ use crate::{
 };
 use impactlab_core::collision::contact::PairMotion;
 use impactlab_core::compare::{
-    DatasetReplay, ErrorSummary, MotionError, PairCase, PairRecords, SPIN_YAW_CHANGE_RAD,
-    largest_yaw_change_rad,
+    DatasetReplay, ErrorSummary, MotionError, PairCase, PairRecords, largest_yaw_change_rad,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::jobs::Progress;
+use impactlab_core::numerics::is_quarter_turn;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::vehicle::Motion;
 use impactlab_networks::pair::{Compared, PairDraw};
@@ -162,7 +162,7 @@ fn compared(
     let impulse_n_s = Compared { forecast: simulated.impulse_n_s(), recorded: case.impulse_n_s() };
     let report = ReplayedCaseReport {
         case: case.name.clone(),
-        spin: turn_rad > SPIN_YAW_CHANGE_RAD,
+        spin: is_quarter_turn(turn_rad),
         error: struck,
         violations: None,
         pair: Some(SimulatedPair { striking, contact_s, impulse_n_s }),
