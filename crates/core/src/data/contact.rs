@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use crate::data::{ForceHistory, Sampling};
-use crate::numerics::quantile_of_sorted;
+use crate::numerics::{SIGMA_PER_MAD, quantile_of_sorted};
 
 /// Shortest time without contact that separates two pulses, s.
 pub const MIN_GAP_S: f64 = 0.025;
@@ -35,8 +35,6 @@ const NOISE_WINDOW_S: f64 = 0.004;
 const MIN_WINDOW: usize = 5;
 /// A pulse of a noisy force is one if it rises to this many times what counts as zero.
 const LEAST_PULSE: f64 = 2.0;
-/// Standard deviation of a normal distribution over its median absolute deviation.
-const SIGMA_PER_MAD: f64 = 1.4826;
 
 /// Times are written with few digits: a contact that leaves the time of a motion by less is not cut.
 pub const TIME_TOLERANCE_S: f64 = 1e-3;

@@ -129,7 +129,7 @@ pub use table::Table;
 pub use toml_file::{TomlError, TomlFile};
 pub use toml_table::{TomlTable, key_with_unit};
 pub use velocity_fit::{VelocityFit, velocity_fit};
-pub use workbook::Sheet;
+pub use workbook::{ARCHIVE_START, Sheet};
 pub use write::{
     Existing, RESTRICTIONS_COLUMN, check_target, write_atomically, write_restricted_series_csv,
     write_restricted_series_parquet, write_restricted_table, write_series_csv,

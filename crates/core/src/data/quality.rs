@@ -13,7 +13,7 @@ use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
     contact_interval, cut_at_s, quality_jumps, quality_motion,
 };
-use crate::numerics::quantile_of_sorted;
+use crate::numerics::{SIGMA_PER_MAD, quantile_of_sorted};
 
 /// Momentum residual above which a warning is raised, as a share of the impulse.
 const MOMENTUM_RESIDUAL: f64 = 0.01;
@@ -64,8 +64,6 @@ const NOT_SEPARATED: f64 = 0.01;
 /// Duration of a contact above which the unit of time is doubtful, s: no impact takes so long,
 /// times in ms were probably read as s.
 const LONG_CONTACT_S: f64 = 2.0;
-/// Ratio of the standard deviation of a normal variable to its median absolute deviation.
-const SIGMA_PER_MAD: f64 = 1.4826;
 
 /// The property of a case that a flag concerns; it decides the unit of [`Flag::value`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

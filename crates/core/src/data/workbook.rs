@@ -22,7 +22,7 @@ use crate::data::text::Text;
 use crate::data::{DataError, SheetRef, open_file, read_bytes};
 
 /// The first bytes of an archive.
-const ARCHIVE: &[u8] = b"PK\x03\x04";
+pub const ARCHIVE_START: &[u8] = b"PK\x03\x04";
 
 /// Most sheets that are listed.
 const MAX_SHEETS: usize = 1000;
@@ -43,9 +43,9 @@ pub struct Sheet {
 pub(super) fn is_archive(path: &Path) -> Result<bool, DataError> {
     let (file, _) = open_file(path, u64::MAX)?;
     let mut first = Vec::new();
-    let read = file.take(ARCHIVE.len() as u64).read_to_end(&mut first);
+    let read = file.take(ARCHIVE_START.len() as u64).read_to_end(&mut first);
     read.map_err(|source| DataError::io(path, source))?;
-    Ok(first == ARCHIVE)
+    Ok(first == ARCHIVE_START)
 }
 
 /// Reads a sheet of a workbook as text.

@@ -8,6 +8,9 @@ use statrs::function::erf::{erfc, erfc_inv};
 /// sides.
 pub const NORMAL_QUANTILE_95: f64 = 1.644_853_626_951_472_2;
 
+/// Standard deviation of a normal variable over its median absolute deviation.
+pub const SIGMA_PER_MAD: f64 = 1.4826;
+
 /// Probability density at z: `φ(z) = exp(−z²/2) / √(2π)`.
 pub fn normal_density(z: f64) -> f64 {
     (-z * z / 2.0).exp() / (2.0 * PI).sqrt()

@@ -10,7 +10,7 @@ use crate::site::{
     DrawingSummary, GeographicFrame, PixelMap, SiteError, SiteOrigin, WorldFile, geo_tiff,
     picture_size_px, world_file_beside,
 };
-use crate::units::{Quantity, US_SURVEY_FOOT, UnitSystem};
+use crate::units::{FOOT_M, INCH_M, Quantity, US_SURVEY_FOOT, UnitSystem};
 use crate::vehicle::{FrictionZone, RoadSlope};
 
 /// Side of a pixel of a picture of which nothing says where it lies, m; its middle is then at the origin.
@@ -185,9 +185,9 @@ impl LengthUnit {
             Self::Metre => 1.0,
             Self::Centimetre => 0.01,
             Self::Millimetre => 0.001,
-            Self::Foot => 0.3048,
+            Self::Foot => FOOT_M,
             Self::SurveyFoot => US_SURVEY_FOOT.si_per_unit,
-            Self::Inch => 0.0254,
+            Self::Inch => INCH_M,
         }
     }
 }

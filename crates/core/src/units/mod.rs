@@ -16,7 +16,7 @@ pub use format::{
 pub use phrase::Phrase;
 pub use phrase_value::{PhraseNumber, PhraseValue, named_unit, three_digits};
 pub use quantity::{
-    KILOMETRE_PER_HOUR_M_S, KNOT_M_S, MILE_PER_HOUR_M_S, Quantity, STANDARD_GRAVITY_M_S2,
-    US_SURVEY_FOOT, Unit, UnitSystem,
+    FOOT_M, INCH_M, KILOMETRE_PER_HOUR_M_S, KNOT_M_S, MILE_PER_HOUR_M_S, POUND_FORCE_N, Quantity,
+    STANDARD_GRAVITY_M_S2, US_SURVEY_FOOT, Unit, UnitSystem,
 };
 pub use typed::TypedError;

@@ -19,12 +19,15 @@ pub const KNOT_M_S: f64 = 1852.0 / 3600.0;
 /// One kilometre per hour, m/s.
 pub const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
 
-const FOOT_M: f64 = 0.3048;
-const INCH_M: f64 = 0.0254;
+/// One foot, m; exact by definition (international yard and pound agreement, 1959).
+pub const FOOT_M: f64 = 0.3048;
+/// One inch, m.
+pub const INCH_M: f64 = 0.0254;
 const YARD_M: f64 = 3.0 * FOOT_M;
 const MILE_M: f64 = 5280.0 * FOOT_M;
 const POUND_KG: f64 = 0.453_592_37;
-const POUND_FORCE_N: f64 = POUND_KG * STANDARD_GRAVITY_M_S2;
+/// One pound-force, N: the weight of a pound of 0.45359237 kg under standard gravity.
+pub const POUND_FORCE_N: f64 = POUND_KG * STANDARD_GRAVITY_M_S2;
 const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 /// The gon, of which a right angle has 100: total stations are in it.

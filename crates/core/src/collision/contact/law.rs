@@ -23,10 +23,11 @@
 //! speed. Generic over the scalar, so that strips of several pairs may lie side by side.
 
 use crate::numerics::{Lanes, LanesOver};
+use crate::units::INCH_M;
 
 /// Deflection beyond which nothing is given back, m: 52.5 in, where the parabola of
 /// [`EdsmacManual`](crate::bibliography::EdsmacManual) ends.
-pub const RECOVERY_END_M: f64 = 52.5 * 0.0254;
+pub const RECOVERY_END_M: f64 = 52.5 * INCH_M;
 
 /// Share ρ that a crushed face gives back at no depth, after
 /// [`EdsmacManual`](crate::bibliography::EdsmacManual).

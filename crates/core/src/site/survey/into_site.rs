@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use crate::data::{GeographicPlace, MAX_SURVEY_BYTES, open_file, read_bytes};
+use crate::data::{ARCHIVE_START, GeographicPlace, MAX_SURVEY_BYTES, open_file, read_bytes};
 use crate::ranges::SURVEY_COORDINATE;
 use crate::site::survey::found::{Found, Thing, wrong};
 use crate::site::survey::{geojson, kml, table};
@@ -15,9 +15,6 @@ use crate::vehicle::FrictionZone;
 
 /// Bytes at the beginning of a file by which its format is found out.
 const HEAD_BYTES: u64 = 4096;
-
-/// What an archive begins with.
-const ARCHIVE: &[u8] = b"PK\x03\x04";
 
 /// Largest distance from the first point, m: what is farther away belongs to another place, or is wrong.
 const LARGEST_M: f64 = 100_000.0;
@@ -52,7 +49,7 @@ impl SurveyFormat {
         let mut head = Vec::new();
         file.take(HEAD_BYTES).read_to_end(&mut head).ok()?;
         let is_kmz = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("kmz"));
-        if is_kmz && head.starts_with(ARCHIVE) {
+        if is_kmz && head.starts_with(ARCHIVE_START) {
             return Some(Self::Kmz);
         }
         Self::from_head(&head)

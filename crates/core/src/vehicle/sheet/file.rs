@@ -34,6 +34,7 @@ use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
     CG_TO_AXLE, ROLL_DAMPING, ROLL_STIFFNESS, STATIC_STABILITY_FACTOR, TRACK_WIDTH, VEHICLE_MASS,
 };
+use crate::units::INCH_M;
 use crate::vehicle::sheet::{DataSheet, Drive, SheetQuantity as Q, VehicleClass};
 use crate::vehicle::{CrushParameters, Equations};
 
@@ -218,7 +219,7 @@ fn tire_radius_m(size: &str) -> Option<f64> {
     let rim: String = rim.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
     let (width, aspect, rim): (f64, f64, f64) =
         (width.trim().parse().ok()?, aspect.parse().ok()?, rim.parse().ok()?);
-    Some(0.97 * (rim * 0.0254 / 2.0 + width * 1e-3 * aspect / 100.0))
+    Some(0.97 * (rim * INCH_M / 2.0 + width * 1e-3 * aspect / 100.0))
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::StudyError;
 use crate::case_file::{CASE_ENDING, FORMAT};
 use impactlab_core::compare::PairRecords;
-use impactlab_core::data::{CASES_FILE, DatasetKind, TomlFile, is_gltf, open_file};
+use impactlab_core::data::{ARCHIVE_START, CASES_FILE, DatasetKind, TomlFile, is_gltf, open_file};
 use impactlab_core::site::{CloudFormat, SurveyFormat, is_picture, is_picture_file};
 
 /// Bytes at the start of a file by which its kind is found out; a settings file is read whole.
@@ -25,8 +25,7 @@ pub const MODEL_ENDING: &str = "safetensors";
 /// Ending of the names of atlases.
 pub const ATLAS_ENDING: &str = "atlas";
 
-/// What the archive of an atlas begins with, and the first file in it, whose name stands behind the header.
-const ARCHIVE: &[u8] = b"PK\x03\x04";
+/// The first file in the archive of an atlas, whose name stands behind the header.
 const ATLAS_HEAD: &[u8] = b"atlas.json";
 const ARCHIVE_HEADER_BYTES: usize = 30;
 
@@ -281,7 +280,7 @@ fn from_content(path: &Path) -> Option<InputKind> {
         return Some(InputKind::Survey);
     }
     let first = head.get(ARCHIVE_HEADER_BYTES..).unwrap_or_default();
-    if head.starts_with(ARCHIVE) && first.starts_with(ATLAS_HEAD) {
+    if head.starts_with(ARCHIVE_START) && first.starts_with(ATLAS_HEAD) {
         return Some(InputKind::Atlas);
     }
     // The header of a trained network is JSON after its length.

@@ -3,7 +3,7 @@
 //! A solver knows no units; whoever built the model chose mass, length and time, and everything else
 //! follows: a force is in mass · length / time². The files do not say the choice.
 
-use crate::units::significant;
+use crate::units::{FOOT_M, INCH_M, POUND_FORCE_N, significant};
 
 /// The units of mass, length and time of a finite-element model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -71,10 +71,8 @@ impl DeckUnits {
         }
     }
 
-    /// Size of the units of mass, length and time in kg, m and s. A pound-force is 0.45359237 · 9.80665 N,
-    /// an inch 0.0254 m.
+    /// Size of the units of mass, length and time in kg, m and s.
     fn factors(self) -> [f64; 3] {
-        const POUND_FORCE_N: f64 = 0.453_592_37 * 9.806_65;
         match self {
             Self::KgMS => [1.0, 1.0, 1.0],
             Self::TMmS => [1e3, 1e-3, 1.0],
@@ -82,8 +80,8 @@ impl DeckUnits {
             Self::GMmMs => [1e-3, 1e-3, 1e-3],
             Self::KgMmS => [1.0, 1e-3, 1.0],
             Self::GCmUs => [1e-3, 1e-2, 1e-6],
-            Self::LbfInS => [POUND_FORCE_N / 0.0254, 0.0254, 1.0],
-            Self::SlugFtS => [POUND_FORCE_N / 0.3048, 0.3048, 1.0],
+            Self::LbfInS => [POUND_FORCE_N / INCH_M, INCH_M, 1.0],
+            Self::SlugFtS => [POUND_FORCE_N / FOOT_M, FOOT_M, 1.0],
         }
     }
 
