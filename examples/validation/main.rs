@@ -21,7 +21,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::{Existing, write_bytes};
 use impactlab_document::report::ReportDate;
 use impactlab_study::{HeldIntervals, Measured, Measurement, Measurements, ValidationTable};
 use serde::Deserialize;
@@ -81,9 +81,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "# Written by `cargo run --release --example validation`, not by hand.\n\n{}",
         toml::to_string_pretty(&all)?
     );
-    let write = |path: &Path, text: &str| {
-        write_atomically(path, Existing::Replace, |file| file.write_all(text.as_bytes()))
-    };
+    let write = |path: &Path, text: &str| write_bytes(path, Existing::Replace, text.as_bytes());
     write(&root.join("assets/validation.toml"), &text)?;
     write(&document_path, &document)?;
     Ok(())

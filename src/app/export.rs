@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::{Existing, write_bytes};
 use impactlab_core::error_chain;
 use impactlab_core::site::MapFormat;
 use impactlab_document::exchange::{DxfOptions, dxf, glb, map};
@@ -27,8 +27,7 @@ pub fn write_figure(
 ) -> Result<(), String> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
         let text = numbers(figure)?;
-        return write_atomically(path, existing, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| error_chain(&error));
+        return write_bytes(path, existing, text.as_bytes()).map_err(|error| error_chain(&error));
     }
     let canvas = Canvas { dark, ..Canvas::default() };
     figure_image(figure, canvas)
@@ -65,8 +64,7 @@ pub fn write_report(
     let format = ReportFormat::from_path(path).map_err(|error| error_chain(&error))?;
     let bytes = document.bytes(format, Some(&report_drawing));
     let bytes = bytes.map_err(|error| error_chain(&error))?;
-    write_atomically(path, existing, |out| out.write_all(&bytes))
-        .map_err(|error| error_chain(&error))
+    write_bytes(path, existing, &bytes).map_err(|error| error_chain(&error))
 }
 
 /// A scene for another program.
@@ -115,8 +113,7 @@ pub fn write_exchange(export: SceneExport, path: &Path, existing: Existing) -> R
         SceneFormat::Glb => glb(&scene, &mut bytes),
     }
     .map_err(|error| error_chain(&error))?;
-    write_atomically(path, existing, |out| out.write_all(&bytes))
-        .map_err(|error| error_chain(&error))
+    write_bytes(path, existing, &bytes).map_err(|error| error_chain(&error))
 }
 
 /// Returns the numbers of a figure as CSV text.

@@ -14,7 +14,7 @@ use crate::app::state::State;
 use crate::app::tasks::TaskKey;
 use impactlab_core::data::write::{MANIFEST_FILE, check_inputs};
 use impactlab_core::data::{
-    DataError, Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically,
+    DataError, Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_bytes,
 };
 use impactlab_core::error_chain;
 use impactlab_study::{CompareReport, InputKind};
@@ -74,8 +74,7 @@ impl State {
             Output::Archived(_, model) => self.start_writing(path, move |to| {
                 let bytes =
                     read_bytes(&model, MAX_MODEL_BYTES).map_err(|error| error_chain(&error))?;
-                write_atomically(to, existing, |out| out.write_all(&bytes))
-                    .map_err(|error| error_chain(&error))
+                write_bytes(to, existing, &bytes).map_err(|error| error_chain(&error))
             }),
             Output::Comparison => self.save_comparison(path, existing),
             Output::ExamplePlan => self.write_text(SHIPPED_PLAN, &path, existing),
@@ -119,7 +118,7 @@ impl State {
 
     /// Writes a short text and tells the user that it has been written, or why it could not be.
     fn write_text(&mut self, text: &str, path: &Path, existing: Existing) {
-        let written = write_atomically(path, existing, |out| out.write_all(text.as_bytes()));
+        let written = write_bytes(path, existing, text.as_bytes());
         match written {
             Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
             Err(error) => self.say(Severity::Error, error_chain(&error)),

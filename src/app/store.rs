@@ -12,7 +12,7 @@ use egui::Context;
 
 use crate::app::state::State;
 use impactlab_core::data::write::WriterLock;
-use impactlab_core::data::{DataError, Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
+use impactlab_core::data::{DataError, Existing, MAX_RESULTS_BYTES, read_utf8, write_bytes};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::{Job, Update};
 
@@ -225,7 +225,7 @@ fn free_name(path: &Path) -> PathBuf {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), DataError> {
-    write_atomically(path, Existing::Replace, |out| out.write_all(text.as_bytes()))
+    write_bytes(path, Existing::Replace, text.as_bytes())
 }
 
 #[cfg(test)]

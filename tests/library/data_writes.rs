@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 
 use impactlab_core::data::write::{OutputFolder, RunRecord, WriterLock};
-use impactlab_core::data::{Existing, check_target, write_atomically};
+use impactlab_core::data::{Existing, check_target, write_atomically, write_bytes};
 use impactlab_core::error_chain;
 use tempfile::TempDir;
 
@@ -19,7 +19,7 @@ fn folder() -> TempDir {
 }
 
 fn write(path: &Path, existing: Existing, text: &str) -> Result<(), String> {
-    let written = write_atomically(path, existing, |out| out.write_all(text.as_bytes()));
+    let written = write_bytes(path, existing, text.as_bytes());
     written.map_err(|error| error_chain(&error))
 }
 

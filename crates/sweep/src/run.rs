@@ -9,7 +9,7 @@ use crate::chunk::{chunk_path, read_chunk, read_rows, rows_bytes};
 use crate::row::{Answerer, Row};
 use crate::rows::Rows;
 use crate::{Plan, SweepError};
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::{Existing, write_bytes};
 use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_study::Library;
 
@@ -109,7 +109,7 @@ pub fn run_chunks(
         plan.check_files()?;
         let table = Rows::new(&plan, chunk, &rows);
         let bytes = rows_bytes(&table)?;
-        write_atomically(&path, Existing::Replace, |out| out.write_all(&bytes))?;
+        write_bytes(&path, Existing::Replace, &bytes)?;
         run.rows += table.len() as u64;
         run.failed += table.n_failed() as u64;
         run.computed.push(chunk);

@@ -8,9 +8,7 @@ use serde::Deserialize;
 use crate::app::archive::entry::VERSION;
 use crate::app::archive::{ArchiveEntry, ArchiveError, ArchiveKind};
 use impactlab_core::data::write::FileDigest;
-use impactlab_core::data::{
-    Existing, MAX_RESULTS_BYTES, list_folder, read_bytes, write_atomically,
-};
+use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, list_folder, read_bytes, write_bytes};
 use impactlab_study::MODEL_ENDING;
 
 /// The ending of notes.
@@ -101,7 +99,7 @@ impl ArchiveFolder {
         let path = self.path_of(entry).with_extension(NOTE_ENDING);
         let text = serde_json::to_string_pretty(entry)
             .map_err(|error| ArchiveError::Content(error.to_string()))?;
-        Ok(write_atomically(&path, Existing::Replace, |out| out.write_all(text.as_bytes()))?)
+        Ok(write_bytes(&path, Existing::Replace, text.as_bytes())?)
     }
 
     /// Gives something another name.

@@ -9,7 +9,7 @@ use crate::app::command::Command;
 use crate::app::found::Found;
 use crate::app::model::file_name;
 use crate::app::tasks::{TaskKey, Tasks};
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::{Existing, write_bytes};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_core::numerics::sha256_hex;
@@ -166,9 +166,7 @@ fn keep_bytes(
     content: &[u8],
 ) -> Result<ArchiveEntry, ArchiveError> {
     let draft = ArchiveEntry { sha256: sha256_hex([content]), ..draft };
-    folder.put(draft, |path| {
-        Ok(write_atomically(path, Existing::Replace, |out| out.write_all(content))?)
-    })
+    folder.put(draft, |path| Ok(write_bytes(path, Existing::Replace, content)?))
 }
 
 fn read_result(folder: &ArchiveFolder, entry: ArchiveEntry) -> Result<OpenedResult, String> {

@@ -10,7 +10,7 @@ use crate::app::panes::Pane;
 use crate::app::state::{Session, State};
 use crate::app::tasks::TaskKey;
 use crate::app::workspaces::Workspace;
-use impactlab_core::data::{Existing, Severity, write_atomically};
+use impactlab_core::data::{Existing, Severity, write_bytes};
 use impactlab_core::error_chain;
 use impactlab_core::ranges::SITE_DISTANCE;
 
@@ -103,7 +103,7 @@ impl State {
             Ok(text) => text,
             Err(error) => return self.say(Severity::Error, error.to_string()),
         };
-        match write_atomically(path, existing, |out| out.write_all(text.as_bytes())) {
+        match write_bytes(path, existing, text.as_bytes()) {
             Ok(()) => {
                 self.say(Severity::Info, format!("{} written", path.display()));
                 self.project.put_on_site(Some(path.to_owned()));

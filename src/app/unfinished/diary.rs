@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::archive::NOTE_ENDING;
 use crate::app::unfinished::note::TrainingNote;
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::{Existing, write_bytes};
 use impactlab_core::error_chain;
 use impactlab_networks::learning::TrainingReport;
 
@@ -62,7 +62,6 @@ impl TrainingDiary {
     fn write(&self) -> Result<(), String> {
         let path = self.checkpoint.with_extension(NOTE_ENDING);
         let text = serde_json::to_string_pretty(&self.note).map_err(|error| error.to_string())?;
-        write_atomically(&path, Existing::Replace, |out| out.write_all(text.as_bytes()))
-            .map_err(|error| error_chain(&error))
+        write_bytes(&path, Existing::Replace, text.as_bytes()).map_err(|error| error_chain(&error))
     }
 }

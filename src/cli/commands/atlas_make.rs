@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, shown_path};
 use crate::cli::options::OverwriteArg;
-use impactlab_core::data::write_atomically;
+use impactlab_core::data::write_bytes;
 use impactlab_core::numerics::sha256_hex;
 use impactlab_sweep::atlas::{AtlasBuilder, AtlasError, Axis};
 
@@ -61,7 +61,7 @@ pub(super) fn run(args: &MakeArgs, console: &mut Console<'_>) -> Result<Verdict,
     }
     let atlas = builder.finish()?;
     let bytes = atlas.to_bytes().map_err(|error| AtlasError::Encode(Box::new(error)))?;
-    write_atomically(&args.out, args.overwrite.into(), |file| file.write_all(&bytes))?;
+    write_bytes(&args.out, args.overwrite.into(), &bytes)?;
     let made = Made {
         out: &args.out,
         bytes: bytes.len(),

@@ -1,6 +1,5 @@
 //! `impactlab export`: the scene or the motion of a case for other programs.
 
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -13,7 +12,7 @@ use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{OverwriteArg, UnitsArg, number};
 use impactlab_core::data::{
-    write_atomically, write_restricted_series_csv, write_restricted_series_parquet,
+    write_bytes, write_restricted_series_csv, write_restricted_series_parquet,
     write_restricted_table,
 };
 use impactlab_core::ranges::INSTANT;
@@ -193,9 +192,7 @@ fn export_reconstruction(
             return written(args, (format, &scene), notes, console);
         }
     }
-    write_atomically(&args.out, existing, |out: &mut dyn Write| -> io::Result<()> {
-        out.write_all(&bytes)
-    })?;
+    write_bytes(&args.out, existing, &bytes)?;
     written(args, (format, &scene), notes, console)
 }
 
@@ -252,8 +249,6 @@ fn write(args: &ExportArgs, (format, built): (FormatArg, &BuiltScene)) -> Result
             return Ok(write(path, existing, series, restrictions.as_deref())?);
         }
     }
-    write_atomically(path, existing, |out: &mut dyn Write| -> io::Result<()> {
-        out.write_all(&bytes)
-    })?;
+    write_bytes(path, existing, &bytes)?;
     Ok(())
 }

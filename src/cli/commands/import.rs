@@ -14,7 +14,7 @@ use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::collision::{ChannelClass, filter_channel};
 use impactlab_core::data::{
     ColumnMap, CrashTest, Existing, RecordedControls, RecordedSide, RecorderRecord, Severity,
-    check_file, parts_beside, read_any_series, write_atomically, write_restricted_series_csv,
+    check_file, parts_beside, read_any_series, write_bytes, write_restricted_series_csv,
     write_restricted_table,
 };
 use impactlab_reconstruct::evidence::{Edr, Evidence};
@@ -162,9 +162,7 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
         RecorderCar::Striking => evidence.striking_edr.replace(edr),
     };
     let text = evidence.to_toml();
-    write_atomically(&staging.join("evidence.toml"), Existing::Refuse, |out| {
-        out.write_all(text.as_bytes())
-    })?;
+    write_bytes(&staging.join("evidence.toml"), Existing::Refuse, text.as_bytes())?;
     let mut files = vec![PathBuf::from("evidence.toml")];
     let mut notes = vec![record.description.clone()];
     notes.extend(record.doubts.iter().cloned());
@@ -272,9 +270,7 @@ fn import_test(args: &ImportArgs, staging: &Path) -> Result<Imported, CliError> 
     }
     match crush_section(&test) {
         Ok((section, said)) => {
-            write_atomically(&staging.join("crush.toml"), Existing::Refuse, |out| {
-                out.write_all(section.as_bytes())
-            })?;
+            write_bytes(&staging.join("crush.toml"), Existing::Refuse, section.as_bytes())?;
             files.push(PathBuf::from("crush.toml"));
             notes.extend(said);
         }

@@ -8,7 +8,7 @@ use crate::cli::CliError;
 use crate::cli::commands::import::Imported;
 use crate::cli::console::under_bar;
 use crate::cli::options::{Words, number, one_of};
-use impactlab_core::data::{Existing, MAX_SETTINGS_BYTES, write_atomically};
+use impactlab_core::data::{Existing, MAX_SETTINGS_BYTES, write_bytes};
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::PIXEL_SIZE;
 use impactlab_core::site::{
@@ -127,9 +127,7 @@ fn import_survey(
         let (path, bytes, limit) = (file.to_owned(), text.len(), MAX_SETTINGS_BYTES);
         return Err(SiteError::LongSite { path, bytes, limit }.into());
     }
-    write_atomically(&staging.join("site.toml"), Existing::Refuse, |out| {
-        out.write_all(text.as_bytes())
-    })?;
+    write_bytes(&staging.join("site.toml"), Existing::Refuse, text.as_bytes())?;
     let notes = site.contents(None, UnitSystem::Si).into_iter().chain(site.notes).collect();
     Ok(Imported { kind: "ground", files: vec!["site.toml".into()], notes })
 }

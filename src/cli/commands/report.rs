@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
 use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Words, count, one_of};
-use impactlab_core::data::write_atomically;
+use impactlab_core::data::write_bytes;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
@@ -117,7 +117,7 @@ pub(in crate::cli) fn run(
     let bytes = document
         .bytes(format, DRAWING)
         .map_err(|source| CliError::Report { path: args.out.clone(), source })?;
-    write_atomically(&args.out, args.overwrite.into(), |file| file.write_all(&bytes))?;
+    write_bytes(&args.out, args.overwrite.into(), &bytes)?;
     let answers = report.variants.iter().flat_map(|variant| &variant.answers);
     let written = WrittenReport {
         out: &args.out,

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use impactlab_core::data::write::json_without_machine;
-use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::data::{Existing, write_atomically, write_bytes};
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::FactWriter;
 use impactlab_study::{Answer, ForceEvaluation};
@@ -23,9 +23,7 @@ pub(in crate::cli) fn write_force_evaluation(
             write_json(&path.join("evaluation.json"), answer)?;
             let tables = FactWriter::english(UnitSystem::default()).markdown(&report.facts());
             let text = answer.caveats.appended_to(tables);
-            write_atomically(&path.join("evaluation.md"), Existing::Refuse, |out| {
-                out.write_all(text.as_bytes())
-            })?;
+            write_bytes(&path.join("evaluation.md"), Existing::Refuse, text.as_bytes())?;
         }
         ForceEvaluation::Folds(_) => {
             write_json(&path.join("cross_validation.json"), answer)?;

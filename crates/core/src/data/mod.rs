@@ -131,6 +131,7 @@ pub use toml_table::{TomlTable, key_with_unit};
 pub use velocity_fit::{VelocityFit, velocity_fit};
 pub use workbook::{ARCHIVE_START, Sheet};
 pub use write::{
-    Existing, RESTRICTIONS_COLUMN, check_target, write_atomically, write_restricted_series_csv,
-    write_restricted_series_parquet, write_restricted_table, write_series_csv,
+    Existing, RESTRICTIONS_COLUMN, check_target, write_atomically, write_bytes,
+    write_restricted_series_csv, write_restricted_series_parquet, write_restricted_table,
+    write_series_csv,
 };

@@ -14,7 +14,7 @@ use serde_json::{Map, Value};
 use crate::nn::checkpoint_bytes::{LENGTH_BYTES, MAX_HEADER_BYTES, decode, encode, kind_in_header};
 use crate::nn::{NamedTensors, NnError};
 use impactlab_core::data::{
-    DataError, Existing, MAX_MODEL_BYTES, open_file, read_bytes, write_atomically,
+    DataError, Existing, MAX_MODEL_BYTES, open_file, read_bytes, write_bytes,
 };
 use impactlab_core::numerics::sha256_hex;
 
@@ -113,7 +113,7 @@ impl Checkpoint {
     /// saved.
     pub fn write(&self, path: &Path, existing: Existing) -> Result<(), NnError> {
         let bytes = self.to_bytes()?;
-        Ok(write_atomically(path, existing, |out| out.write_all(&bytes))?)
+        Ok(write_bytes(path, existing, &bytes)?)
     }
 
     /// The contents of the file that [`Checkpoint::write`] writes.

@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::case_file::on_disk::sealed;
 use crate::case_file::paths::{absolute, relative, replace_strings};
 use crate::case_file::{CaseError, CaseFile};
-use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
+use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_bytes};
 
 /// Ending of the names of case files.
 pub const CASE_ENDING: &str = "impactlab";
@@ -83,12 +83,12 @@ impl CaseFile {
     /// Writes a case, whole or not at all.
     ///
     /// # Errors
-    /// [`CaseError::Data`], as for [`write_atomically`].
+    /// [`CaseError::Data`], as for [`write_bytes`].
     pub fn save(&self, path: &Path, existing: Existing) -> Result<(), CaseError> {
         let io = |source| CaseError::Io { path: path.to_owned(), source };
         let path = std::path::absolute(path).map_err(io)?;
         let text = self.to_text(&path)?;
-        Ok(write_atomically(&path, existing, |out| out.write_all(text.as_bytes()))?)
+        Ok(write_bytes(&path, existing, text.as_bytes())?)
     }
 
     /// The same case with other paths in variants, files and models.

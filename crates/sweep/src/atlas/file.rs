@@ -27,7 +27,7 @@ use crate::atlas::model::{MAX_CELLS, n_cells_of};
 use crate::atlas::{
     Atlas, AtlasError, AtlasFileError, Axis, Cell, HistogramKind, OutcomeSensitivity, npy,
 };
-use impactlab_core::data::{Existing, read_bytes, write_atomically};
+use impactlab_core::data::{Existing, read_bytes, write_bytes};
 
 /// Version of the format.
 pub(super) const FORMAT: u32 = 1;
@@ -79,7 +79,7 @@ impl Atlas {
     /// [`AtlasError::Data`], [`AtlasError::Encode`].
     pub fn write(&self, path: &Path, existing: Existing) -> Result<(), AtlasError> {
         let bytes = self.to_bytes().map_err(|source| AtlasError::Encode(Box::new(source)))?;
-        Ok(write_atomically(path, existing, |file| file.write_all(&bytes))?)
+        Ok(write_bytes(path, existing, &bytes)?)
     }
 
     /// The file of the atlas. The same atlas gives the same bytes.

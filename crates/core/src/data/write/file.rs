@@ -52,6 +52,16 @@ pub fn write_atomically(
     Ok(())
 }
 
+/// Writes a file whose content is there as a whole, as [`write_atomically`] does.
+///
+/// - `existing`: what happens to a file that exists already.
+///
+/// # Errors
+/// As for [`write_atomically`].
+pub fn write_bytes(path: &Path, existing: Existing, bytes: &[u8]) -> Result<(), DataError> {
+    write_atomically(path, existing, |out| out.write_all(bytes))
+}
+
 /// Returns an error where [`write_atomically`] could not write, so that it can be told before the
 /// work whose result is to be written. Nothing is changed.
 ///

@@ -1,9 +1,9 @@
 //! Writes files in such a way that nothing is lost: a reader never finds an incomplete file, nothing
 //! that exists is replaced unasked, and what a killed write has left is removed by the next one.
 //!
-//! - [`write_atomically`] writes one file, [`check_target`] says beforehand what it would refuse,
-//!   [`check_inputs`] whether it would replace what its content is computed from, [`check_ending`]
-//!   whether its name says what it holds.
+//! - [`write_atomically`] writes one file, [`write_bytes`] one whose content is there as a whole;
+//!   [`check_target`] says beforehand what they would refuse, [`check_inputs`] whether they would
+//!   replace what the content is computed from, [`check_ending`] whether the name says what it holds.
 //! - [`OutputFolder`] writes a folder of files that belong together, with a [`Manifest`] of how they
 //!   were made.
 //! - [`WriterLock`] keeps two writers apart.
@@ -22,7 +22,7 @@ mod temporary;
 
 pub use digest::FileDigest;
 pub use error::WriteError;
-pub use file::{Existing, check_ending, check_target, write_atomically};
+pub use file::{Existing, check_ending, check_target, write_atomically, write_bytes};
 pub use folder::OutputFolder;
 pub use inputs::check_inputs;
 pub use lock::WriterLock;

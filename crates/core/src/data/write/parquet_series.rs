@@ -12,9 +12,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use crate::data::{
-    Channel, DataError, Existing, RESTRICTIONS_COLUMN, TimeSeries, write_atomically,
-};
+use crate::data::{Channel, DataError, Existing, RESTRICTIONS_COLUMN, TimeSeries, write_bytes};
 
 /// Writes a time series as Parquet with the columns that
 /// [`write_series_csv`](crate::data::write_series_csv) has, as numbers of 64 bits without a missing one. What
@@ -23,7 +21,7 @@ use crate::data::{
 /// - `existing`: what happens to a file that exists already.
 ///
 /// # Errors
-/// As for [`write_atomically`].
+/// As for [`write_bytes`].
 pub fn write_restricted_series_parquet(
     path: &Path,
     existing: Existing,
@@ -32,7 +30,7 @@ pub fn write_restricted_series_parquet(
 ) -> Result<(), DataError> {
     let bytes = bytes(series, restrictions)
         .map_err(|error| DataError::io(path, io::Error::other(error.to_string())))?;
-    write_atomically(path, existing, |out| out.write_all(&bytes))
+    write_bytes(path, existing, &bytes)
 }
 
 fn bytes(series: &TimeSeries, restrictions: Option<&str>) -> Result<Vec<u8>, ParquetError> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-use crate::data::{Existing, MAX_RASTER_PIXELS, write_atomically};
+use crate::data::{Existing, MAX_RASTER_PIXELS, write_atomically, write_bytes};
 use crate::jobs::{Progress, ProgressCallback};
 use crate::site::cloud::las_unit::CloudUnits;
 use crate::site::cloud::raster::{Raster, is_possible, size_px};
@@ -269,6 +269,6 @@ fn write_png(
 }
 
 fn write_text(folder: &Path, name: &str, text: &str) -> Result<(), SiteError> {
-    write_atomically(&folder.join(name), Existing::Refuse, |out| out.write_all(text.as_bytes()))?;
+    write_bytes(&folder.join(name), Existing::Refuse, text.as_bytes())?;
     Ok(())
 }

@@ -16,7 +16,7 @@ use crate::{
     StudyError, VehicleChoice,
 };
 use impactlab_core::data::write::ModelDigest;
-use impactlab_core::data::{DataError, Existing, Outcome, write_atomically};
+use impactlab_core::data::{DataError, Existing, Outcome, write_bytes};
 use impactlab_core::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
@@ -155,9 +155,9 @@ impl Answer<CompareReport> {
         let tables = tables.map(|(_, name, table)| (name, table.to_csv(restrictions.as_deref())));
         let texts = tables.chain([(text_name, markdown)]);
         let files = texts.map(|(name, text)| (folder.join(name), text.into_bytes()));
-        std::iter::once((file.clone(), json)).chain(files).try_for_each(|(path, bytes)| {
-            write_atomically(&path, Existing::Refuse, |out| out.write_all(&bytes))
-        })
+        std::iter::once((file.clone(), json))
+            .chain(files)
+            .try_for_each(|(path, bytes)| write_bytes(&path, Existing::Refuse, &bytes))
     }
 
     /// Version of the program, seed and the networks that were given.
