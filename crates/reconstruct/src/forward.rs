@@ -27,7 +27,8 @@ use impactlab_core::vehicle::{
     VehicleState, simulate_paths,
 };
 
-/// Height of the contact above the road, m: sills and bumpers of passenger cars.
+/// Height of the contact above the road, m: sills and bumpers of passenger cars. It is a little above that of
+/// single impacts and of the law of contact; the intervals of reconstructions were measured with it.
 pub(crate) const CONTACT_HEIGHT_M: f64 = 0.55;
 
 /// Time before the start from which on a single car is steered and its held wheels are, s.

@@ -63,8 +63,8 @@ pub use pair_row::{PairRow, PairRowError, PairRowQuestion, pair_row};
 pub use recorded_pair::analyse_recorded_pair;
 pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use rival::{Rival, RivalForce};
-pub(crate) use scenario::scale_of_car;
 pub use scenario::{PulseSetup, analyse_scenario};
+pub(crate) use scenario::{USUAL_CONTACT_HEIGHT_M, scale_of_car};
 pub use second_contacts::SecondContacts;
 
 pub(crate) use impactlab_core::vehicle::Sensitivity;

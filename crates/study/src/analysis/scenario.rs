@@ -19,6 +19,10 @@ use impactlab_core::vehicle::{
 /// Longest sample interval of the pulse, s; a shorter pulse has at least 20 intervals.
 const PULSE_INTERVAL_S: f64 = 1e-3;
 
+/// Height of the force of one impact above the ground where nobody says it, m: that of
+/// most finite-element runs from which the networks learned.
+pub(crate) const USUAL_CONTACT_HEIGHT_M: f64 = 0.52;
+
 /// Force pulse over which the impulse of the momentum solution is spread.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PulseSetup {
@@ -34,7 +38,11 @@ impl Default for PulseSetup {
     /// A haversine over 0.1 s. The contact durations of the shipped finite-element runs lie around
     /// 0.116 s.
     fn default() -> Self {
-        Self { shape: PulseShape::Haversine, duration_s: 0.1, contact_height_m: 0.52 }
+        Self {
+            shape: PulseShape::Haversine,
+            duration_s: 0.1,
+            contact_height_m: USUAL_CONTACT_HEIGHT_M,
+        }
     }
 }
 

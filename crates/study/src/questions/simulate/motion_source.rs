@@ -10,7 +10,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatSubject, Caveats};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Analysis, PulseSetup, scale_of_car};
+use crate::analysis::{Analysis, PulseSetup, USUAL_CONTACT_HEIGHT_M, scale_of_car};
 use crate::ask::checks::{check, check_contact};
 use crate::{Drive, Library, ScenarioChoice, SeriesFile, StudyError, word};
 use impactlab_core::data::{Case, Channel, FileKind, ForceAttributes, ForceHistory, Loaded};
@@ -20,7 +20,7 @@ use impactlab_core::vehicle::{ContactPoint, VehicleParameters};
 
 /// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
 pub const ASSUMED_CONTACT: ContactPoint =
-    ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: 0.52 };
+    ContactPoint { x_body_m: -1.5, y_body_m: -0.9, height_m: USUAL_CONTACT_HEIGHT_M };
 
 /// What drives a motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
