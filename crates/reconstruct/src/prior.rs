@@ -113,8 +113,10 @@ const CONTACT_STIFFNESS_SCATTER: f64 = 0.4;
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
 
-/// Sliding over peak friction where drag is measured and peak friction is not, and how far the peak may be off.
-const USUAL_SLIDING_RATIO: f64 = 0.8;
+/// Sliding over peak friction where nothing says it.
+pub(crate) const USUAL_SLIDING_RATIO: f64 = 0.8;
+
+/// How far the peak friction may be off where drag is measured and it is not.
 const FRICTION_SIGMA_BY_DRAG: f64 = 0.2;
 
 impl Prior {

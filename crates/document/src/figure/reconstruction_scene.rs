@@ -3,7 +3,7 @@
 use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use impactlab_core::collision::{Footprint, Pose, Side};
-use impactlab_core::numerics::interpolate;
+use impactlab_core::numerics::{NORMAL_QUANTILE_95, interpolate};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_core::vehicle::{Path as VehiclePath, PathPoint, TireMark};
@@ -159,7 +159,7 @@ fn contact_elements(
     let mut elements =
         Vec::from(vehicle_outline(name, Role::Target, style, &footprint, &pose, unit));
     if let Some(Measured { value: along_m, sigma }) = damage.along() {
-        let reach_m = 1.645 * sigma;
+        let reach_m = NORMAL_QUANTILE_95 * sigma;
         let ends = vec![at(along_m - reach_m), at(along_m + reach_m)];
         let name = "contact by the damage, 90 %";
         elements.push(FigureElement::line(name, Role::Pulse, ends));

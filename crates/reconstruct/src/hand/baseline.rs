@@ -19,12 +19,11 @@
 use crate::Cars;
 use crate::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence, Measured};
 use crate::hand::slide::{SPIN_DRAG, SPIN_DRAG_SIGMA, slide_speed_m_s};
+use crate::prior::USUAL_SLIDING_RATIO;
 use impactlab_core::collision::Side;
 use impactlab_core::numerics::line_length;
 use impactlab_core::vehicle::{FrictionZone, friction_at};
 
-/// Sliding over peak friction.
-const SLIDING_RATIO: f64 = 0.8;
 /// Drag factor of a car that rolls, with engine braking.
 const ROLLING_DRAG: f64 = 0.03;
 /// Restitution of the hand calculation.
@@ -99,7 +98,7 @@ fn drag_share(evidence: &Evidence, distance_m: f64, friction: f64) -> (f64, f64)
     }
     let marks: f64 = evidence.marks.iter().map(|mark| line_length(&mark.points_m)).sum();
     let share = (marks / 4.0 / distance_m).min(1.0);
-    (SLIDING_RATIO * share + ROLLING_DRAG / friction * (1.0 - share), 0.12)
+    (USUAL_SLIDING_RATIO * share + ROLLING_DRAG / friction * (1.0 - share), 0.12)
 }
 
 /// Two measurements of one number, each with the weight of its precision.
