@@ -20,7 +20,7 @@ use impactlab_core::vehicle::{
 const PULSE_INTERVAL_S: f64 = 1e-3;
 
 /// Height of the force of one impact above the ground where nobody says it, m: that of
-/// most finite-element runs from which the networks learned.
+/// half of the runs in `datasets/fea`; the others have 0.57 m.
 pub(crate) const USUAL_CONTACT_HEIGHT_M: f64 = 0.52;
 
 /// Force pulse over which the impulse of the momentum solution is spread.
