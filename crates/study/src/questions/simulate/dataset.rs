@@ -27,7 +27,8 @@ use impactlab_core::vehicle::{Equations, Integrator, Motion};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SimulateDatasetRequest {
-    /// The data set.
+    /// The data set; trainings and evaluations call theirs `data`, which is read here, too.
+    #[serde(alias = "data")]
     pub dataset: PathBuf,
     /// One case of it, instead of all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -243,4 +244,20 @@ pub(crate) fn take_case<'a>(
             first: dataset.cases.first().map_or(String::new(), |case| case.name.clone()),
         },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every other question about a whole data set calls it `data`, which was refused here.
+    #[test]
+    fn the_data_set_is_read_by_the_name_that_other_questions_have_for_it() {
+        let [dataset, data] = ["dataset", "data"].map(|key| {
+            let text = format!("{{\"{key}\": \"datasets/pairs\", \"case\": \"d001\"}}");
+            serde_json::from_str::<SimulateDatasetRequest>(&text).unwrap()
+        });
+        assert_eq!(data, dataset);
+        assert_eq!(data.dataset, PathBuf::from("datasets/pairs"));
+    }
 }
