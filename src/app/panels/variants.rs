@@ -16,7 +16,7 @@ use impactlab_study::facts::{FactWriter, Term};
 const COLUMNS: [&str; 11] = [
     "Variant",
     "What differs",
-    "Turn beyond 90°",
+    "Turn of 90° or more",
     "Forecast: X (90 %)",
     "Forecast: Y (90 %)",
     "Heading (90 %)",
@@ -27,7 +27,7 @@ const COLUMNS: [&str; 11] = [
     "Notes",
 ];
 /// What the columns are, as the hint of their headings.
-const MEANING: &str = "What differs: from the first variant. Turn beyond 90°: how probable it is at the end of \
+const MEANING: &str = "What differs: from the first variant. Turn of 90° or more: how probable it is at the end of \
     the forecast. Δv: of the 4DOF model over the contact, with what the tires add (the momentum \
     solution alone stands in the Scenario panel). 4DOF: without an interval. Forecast: median and \
     interval of 90 % where the car is at the end.";

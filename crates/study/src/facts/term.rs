@@ -558,11 +558,11 @@ terms! {
     RecordedTurnWithout: "turn without, recorded", "Drehung ohne, aufgezeichnet",
         "Largest turn of the struck vehicle without stability control";
     ForecastTurnWithout: "turn without, median", "Drehung ohne, Median";
-    QuarterTurnChanceWithout: "over 90° without", "über 90° ohne", "Probability";
+    QuarterTurnChanceWithout: "90° or more without", "90° oder mehr ohne", "Probability";
     RecordedTurnWith: "turn with, recorded", "Drehung mit, aufgezeichnet",
         "Largest turn of the struck vehicle with stability control";
     ForecastTurnWith: "turn with, median", "Drehung mit, Median";
-    QuarterTurnChanceWith: "over 90° with", "über 90° mit", "Probability";
+    QuarterTurnChanceWith: "90° or more with", "90° oder mehr mit", "Probability";
     SavedRecorded: "effect, recorded", "Wirkung, aufgezeichnet",
         "Saved: the vehicle turns by 90° or more without stability control alone";
     SavedForecast: "effect, forecast", "Wirkung, vorhergesagt";
@@ -574,10 +574,10 @@ terms! {
     SavedNotForecast: "saved, but not forecast to be", "gerettet, aber nicht so vorhergesagt";
     ForecastNotSaved: "forecast to be saved, but not", "als gerettet vorhergesagt, aber nicht";
     NeitherSavedNorForecast: "neither saved nor forecast to be", "weder gerettet noch so vorhergesagt";
-    TurnsWithoutRecorded: "over 90° without it, recorded", "ohne sie über 90°, aufgezeichnet";
-    TurnsWithoutForecast: "over 90° without it, forecast", "ohne sie über 90°, vorhergesagt";
-    TurnsWithRecorded: "over 90° with it, recorded", "mit ihr über 90°, aufgezeichnet";
-    TurnsWithForecast: "over 90° with it, forecast", "mit ihr über 90°, vorhergesagt";
+    TurnsWithoutRecorded: "90° or more without it, recorded", "ohne sie 90° oder mehr, aufgezeichnet";
+    TurnsWithoutForecast: "90° or more without it, forecast", "ohne sie 90° oder mehr, vorhergesagt";
+    TurnsWithRecorded: "90° or more with it, recorded", "mit ihr 90° oder mehr, aufgezeichnet";
+    TurnsWithForecast: "90° or more with it, forecast", "mit ihr 90° oder mehr, vorhergesagt";
     CaseTimes: "Time of a case", "Rechenzeit eines Falls";
     KnownEvidence: "known", "bekannt", "How much of the evidence was used";
     Method: "method", "Verfahren";
