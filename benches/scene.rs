@@ -27,7 +27,7 @@ use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, 
 /// Size of a picture, pixels.
 const SIZE: [usize; 2] = [1440, 900];
 /// Ghosts in it.
-const N_GHOSTS: usize = 30;
+const N_GHOSTS: usize = ForecastScene::N_GHOSTS;
 /// Pictures of a measurement.
 const N_PICTURES: usize = 200;
 

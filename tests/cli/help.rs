@@ -8,6 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::program::{SCENARIO, TRAJECTORIES, answer, json, ok, program, text};
+use impactlab_document::scene::ForecastScene;
 
 const EVIDENCE: &str = "tests/data/evidence/spin.toml";
 
@@ -135,6 +136,15 @@ fn every_question_and_the_case_have_schemas() {
     let ran = program().args(["schema", "nonsense"]).output().unwrap();
     let error = String::from_utf8(ran.stderr).unwrap();
     assert!(error.contains("no question is called \"nonsense\""), "{error}");
+}
+
+/// `render scene` draws no ghosts unless asked to: its help has the number that the window and reports draw.
+#[test]
+fn the_help_has_the_usual_number_of_ghosts() {
+    let help = ok(program().args(["render", "scene", "--help"]).output().unwrap());
+    let words: Vec<&str> = help.split_whitespace().collect();
+    let usual = format!("Window and reports draw {}", ForecastScene::N_GHOSTS);
+    assert!(words.join(" ").contains(&usual), "{help}");
 }
 
 #[test]

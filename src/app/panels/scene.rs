@@ -28,7 +28,7 @@ use crate::app::widgets::{OUTDATED, restrictions_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
-use impactlab_document::scene::{FilmTiming, Scene};
+use impactlab_document::scene::{FilmTiming, ForecastScene, Scene};
 use impactlab_draw::scene::{CameraKey, Follow, ScenePicture, ViewKind, scene_view_ui};
 use impactlab_draw::theme;
 use impactlab_study::RestState;
@@ -199,10 +199,11 @@ fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session)
     ui.add_enabled_ui(is_there || *shows_forecast, |ui| {
         let choice = ui.checkbox(shows_forecast, "Forecast");
         choice
-            .on_hover_text(
-                "30 draws of the motion forecast as ghosts, its central path, and where the CG is at its \
+            .on_hover_text(format!(
+                "{} draws of the motion forecast as ghosts, its central path, and where the CG is at its \
                  end: density, regions of 50 and 90 %",
-            )
+                ForecastScene::N_GHOSTS
+            ))
             .on_disabled_hover_text("There is no forecast of this motion");
     });
 }

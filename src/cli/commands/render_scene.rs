@@ -55,7 +55,7 @@ pub(super) struct CaseArgs {
     #[command(flatten)]
     pub(super) source: SourceArgs,
     /// Draw so many paths from a forecast of the response network under the recorded force, and into a
-    /// picture its density and regions at the moment; 0 asks for no forecast
+    /// picture its density and regions at the moment; 0 asks for no forecast. Window and reports draw 30
     #[arg(long, value_name = "N", value_parser = count::<usize>(GHOSTS), default_value = "0")]
     pub(super) ghosts: usize,
     #[command(flatten)]
