@@ -3,6 +3,7 @@
 use crate::data::error::quoted;
 use crate::data::formats::cdr::number;
 use crate::data::formats::recorder::RecordedSide;
+use crate::data::formats::recorder_table::falls;
 use crate::data::spelling::{is_delta_v, letters_and_digits, quantity_name, trailing_unit};
 use crate::data::stated_side::stated_side;
 use crate::units::Quantity;
@@ -141,6 +142,31 @@ impl Table563<'_> {
         self.found(quantity, doubts, fits).map(|(_, values)| values)
     }
 
+    /// The instants of the rows, s. Those that count the time before the crash by the name of their column are negative,
+    /// and that is said.
+    pub(super) fn instants_s(&self, doubts: &mut Vec<String>) -> Option<Vec<Option<f64>>> {
+        let is_time = |key: &str| {
+            let begins = ["time", "seconds", "precrashtime", "precrashseconds"];
+            begins.iter().any(|begin| key.starts_with(begin)) && !key.contains("maximum")
+        };
+        let (idx, mut time_s) = self.found(Quantity::Time, doubts, is_time)?;
+        let key = self.keys().into_iter().nth(idx)?;
+        let written_s: Vec<f64> = time_s.iter().copied().flatten().collect();
+        // Of the other names the order says whether the record goes up to the crash or counts down to it.
+        let counts_back = has(&key, &["before", "prior"])
+            || has(&key, &["timetocrash", "timetoimpact", "timetoae"])
+            || key.contains("precrash") && falls(&written_s);
+        let is_positive = written_s.iter().all(|at_s| *at_s >= 0.0);
+        if counts_back && is_positive && written_s.iter().any(|at_s| *at_s > 0.0) {
+            time_s.iter_mut().flatten().for_each(|at_s| *at_s = 0.0 - *at_s);
+            let name = quoted(self.header.get(idx)?);
+            doubts.push(format!(
+                "{name} counts the time before the crash; its numbers are read as negative"
+            ));
+        }
+        Some(time_s)
+    }
+
     /// The same with the index of the column.
     fn found(
         &self,
@@ -152,7 +178,13 @@ impl Table563<'_> {
             if !fits(&key) {
                 continue;
             }
-            match trailing_unit(name, quantity) {
+            let stated = match trailing_unit(name, quantity) {
+                Ok(None) if quantity == Quantity::Time && key.starts_with("seconds") => {
+                    Ok(Some(quantity.si_unit()))
+                }
+                stated => stated,
+            };
+            match stated {
                 Ok(Some(unit)) => {
                     let later = self.keys().into_iter().enumerate().skip(idx + 1);
                     let later: Vec<String> = later

@@ -43,10 +43,7 @@ impl RecorderRecord {
     /// Adds what the columns of a table hold.
     pub(super) fn add_table(&mut self, table: &Table563<'_>, has_controls: bool) {
         let mut doubts = Vec::new();
-        let time = table.column(Quantity::Time, &mut doubts, |key| {
-            key.starts_with("time") && !key.contains("maximum")
-        });
-        let Some(time_s) = time else {
+        let Some(time_s) = table.instants_s(&mut doubts) else {
             self.doubts.extend(doubts);
             return;
         };
@@ -199,7 +196,7 @@ fn is_anti_lock(key: &str) -> bool {
     is_its && !has(key, &["lamp", "warning", "indicator", "fault"])
 }
 
-/// The rows before the crash that have a speed.
+/// The rows before the crash that have a speed, in the order of time.
 fn rows_before(
     time_s: &[Option<f64>],
     speed: &[Option<f64>],
@@ -211,14 +208,22 @@ fn rows_before(
         |row: &usize| at_s(row).is_some_and(|at_s| at_s <= 0.0 && INSTANT.contains(at_s));
     let is_after = |row: &usize| at_s(row).is_some_and(|at_s| at_s > 0.0);
     let n_after = (0..time_s.len()).filter(has_speed).filter(is_after).count();
+    let falls_over = |rows: &[usize]| falls(&rows.iter().filter_map(at_s).collect::<Vec<_>>());
+    let with_speed: Vec<usize> = (0..time_s.len()).filter(has_speed).collect();
     if n_after > 0 {
+        let mend = match falls_over(&with_speed) {
+            true => {
+                "if they count the seconds before the crash, call their column \"Time before crash [s]\" or write them \
+                 negative"
+            }
+            false => "if it is not, shift the times",
+        };
         doubts.push(format!(
-            "rows after 0 s that have a speed: {n_after}; they are not read, since 0 s is taken as the crash: if \
-             it is not, shift the times"
+            "rows after 0 s that have a speed: {n_after}; they are not read, since 0 s is taken as the crash: {mend}"
         ));
     }
     let before: Vec<usize> = (0..time_s.len()).filter(is_before).collect();
-    let rows: Vec<usize> = before.iter().copied().filter(has_speed).collect();
+    let mut rows: Vec<usize> = before.iter().copied().filter(has_speed).collect();
     if let (Some(first), Some(last)) = (rows.first(), rows.last()) {
         let n_between = before.iter().filter(|row| (first..=last).contains(row)).count();
         let n_missing = n_between - rows.len();
@@ -229,7 +234,16 @@ fn rows_before(
             ));
         }
     }
+    // From the crash back, as some tools write them.
+    if falls_over(&rows) {
+        rows.reverse();
+    }
     rows
+}
+
+/// Whether instants of several rows go back from each to the next.
+pub(super) fn falls(time_s: &[f64]) -> bool {
+    time_s.len() > 1 && time_s.windows(2).all(|pair| pair[1] < pair[0])
 }
 
 /// That rows before a crash follow each other faster than any recorder keeps them, or for longer.

@@ -331,6 +331,38 @@ fn a_speed_after_the_time_of_the_crash_is_said() {
     assert!(record.doubts.iter().any(|doubt| doubt.contains("after 0 s")), "{record:?}");
 }
 
+/// Times before the crash that are written positive, from the first sample on or from the crash back.
+#[test]
+fn times_that_count_back_from_the_crash_are_read_where_their_column_says_so() {
+    let down = "1.0,64\n0.5,58\n0,48\n";
+    let up = "0,48\n0.5,58\n1.0,64\n";
+    for (name, rows) in [
+        ("Time before crash [s]", down),
+        ("Time before crash [s]", up),
+        ("Seconds Before AE", down),
+        ("Time prior to AE (s)", up),
+        ("Time to impact [s]", down),
+        ("Pre-Crash Time [s]", down),
+        ("Time [s]", "0,48\n-0.5,58\n-1.0,64\n"),
+    ] {
+        let record = read(&format!("{name},Speed [km/h]\n{rows}"), None).unwrap();
+        let speed = record.speed_before.unwrap();
+        assert!((speed.speed_m_s - 48.0 / 3.6).abs() < 1e-12 && speed.at_s == 0.0, "{name}");
+        assert_eq!(record.before.time_s, [-1.0, -0.5, 0.0], "{name}");
+        assert!((record.before.speed_m_s[0] - 64.0 / 3.6).abs() < 1e-12, "{name}");
+        let is_said = record.doubts.iter().any(|doubt| doubt.contains("read as negative"));
+        assert_eq!(is_said, name != "Time [s]", "{name}: {:?}", record.doubts);
+    }
+    // Nothing says that these count back, or that the record does not go on from its first sample to the crash.
+    for (name, rows, words) in
+        [("Time [s]", down, "Time before crash [s]"), ("Pre-Crash Time [s]", up, "shift the times")]
+    {
+        let record = read(&format!("{name},Speed [km/h]\n{rows}"), None).unwrap();
+        assert_eq!(record.before.time_s, [0.0], "{name}");
+        assert!(record.doubts.iter().any(|doubt| doubt.contains(words)), "{:?}", record.doubts);
+    }
+}
+
 #[test]
 fn an_anti_lock_system_that_was_at_work_is_read() {
     let text = "Time [s],Speed [mph],Service Brake,ABS Activity\n\
