@@ -7,7 +7,7 @@ use crate::data::formats::recorder::{
 use crate::data::formats::recorder_columns::{NO_RECORD, Table563, has, is_of_road_wheels};
 use crate::data::spelling::is_delta_v;
 use crate::ranges::{ANGULAR_VELOCITY_SAMPLE, INSTANT, Range, SPEED, STEERING_WHEEL_ANGLE};
-use crate::units::Quantity;
+use crate::units::{KILOMETRE_PER_HOUR_M_S, MILE_PER_HOUR_M_S, Quantity};
 
 /// Change over this time from which the record is cut off, m/s.
 const CUT_M_S: f64 = 0.3;
@@ -27,6 +27,17 @@ const HELD_SHARE: f64 = 0.5;
 
 /// Rate at which a car that drives on its tires changes its speed at most, m/s²: that of dry friction and some.
 const TIRES_M_S2: f64 = 12.0;
+
+/// Speeds at which recorders stop, or that stand for no value, m/s: 126 and 127 mph, 254 and 255 km/h. What is read there
+/// may be any speed from it on.
+const LIMITS_M_S: [f64; 4] = [
+    126.0 * MILE_PER_HOUR_M_S,
+    127.0 * MILE_PER_HOUR_M_S,
+    254.0 * KILOMETRE_PER_HOUR_M_S,
+    255.0 * KILOMETRE_PER_HOUR_M_S,
+];
+/// By how much such a number may be off for its rounding in another unit, m/s.
+const AT_LIMIT_M_S: f64 = 0.02;
 
 /// Times that several rows before a crash cover at least and at most, s: recorders keep one to ten a second, for 5
 /// to 20 s.
@@ -140,7 +151,7 @@ impl RecorderRecord {
             return;
         }
         doubts.extend(wrong_span(&time_s));
-        match beyond_tires(&time_s, &speed_m_s) {
+        match beyond_tires(&time_s, &speed_m_s).or_else(|| at_limit(&time_s, &speed_m_s)) {
             Some(why) => doubts.push(why),
             None => {
                 let last = time_s.last().copied().zip(speed_m_s.last().copied());
@@ -330,6 +341,19 @@ fn beyond_tires(time_s: &[f64], speed_m_s: &[f64]) -> Option<String> {
         "the speed goes from {v0:.2} to {v1:.2} m/s between {t0} and {t1} s, which is more than tires can do: wheels \
          that were locked or spun, or a number that stands for none; no speed before the crash is taken"
     ))
+}
+
+/// Why the last speed before a crash may be any higher one, in words: it is the limit of a recorder.
+fn at_limit(time_s: &[f64], speed_m_s: &[f64]) -> Option<String> {
+    let (at_s, last) = (time_s.last()?, speed_m_s.last()?);
+    LIMITS_M_S.iter().any(|limit| (last - limit).abs() < AT_LIMIT_M_S).then(|| {
+        format!(
+            "the speed at {at_s} s is {:.0} km/h ({:.0} mph), where recorders stop counting or have no value: the car may \
+             have been faster; no speed before the crash is taken",
+            last / KILOMETRE_PER_HOUR_M_S,
+            last / MILE_PER_HOUR_M_S
+        )
+    })
 }
 
 /// The last change of velocity of a record; `None` of one that ends where it begins, at 0 s.

@@ -325,6 +325,22 @@ fn a_speed_that_tires_cannot_reach_is_not_taken() {
     assert!(braking.speed_before.is_some() && braking.doubts.is_empty(), "{braking:?}");
 }
 
+/// A recorder whose speed stays at the last number that it has.
+#[test]
+fn a_speed_at_the_limit_of_a_recorder_is_not_taken() {
+    for (unit, limit) in [("mph", "126"), ("mph", "127"), ("km/h", "255"), ("km/h", "202.78")] {
+        let text = format!("Time [s],Speed [{unit}]\n-1,{limit}\n-0.5,{limit}\n0,{limit}\n");
+        let record = read(&text, None).unwrap();
+        assert_eq!((record.speed_before, record.before.time_s.len()), (None, 3), "{limit}");
+        assert!(record.doubts.iter().any(|doubt| doubt.contains("stop counting")), "{record:?}");
+    }
+    // Braked from there, the last speed is one.
+    let braked = read("Time [s],Speed [mph]\n-1,126\n-0.5,120\n0,112\n", None).unwrap();
+    assert!(braked.speed_before.is_some() && braked.doubts.is_empty(), "{braked:?}");
+    let fast = read("Time [s],Speed [km/h]\n-1,250\n-0.5,250\n0,250\n", None).unwrap();
+    assert!(fast.speed_before.is_some() && fast.doubts.is_empty(), "{fast:?}");
+}
+
 #[test]
 fn a_speed_after_the_time_of_the_crash_is_said() {
     let record = read("Time [s],Speed [km/h]\n0,64\n0.5,58\n1,48\n", None).unwrap();
