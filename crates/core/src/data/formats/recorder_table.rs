@@ -252,9 +252,9 @@ fn rows_before(
     rows
 }
 
-/// Whether instants of several rows go back from each to the next.
+/// Whether instants go back from each to the next. Two may be of two events.
 pub(super) fn falls(time_s: &[f64]) -> bool {
-    time_s.len() > 1 && time_s.windows(2).all(|pair| pair[1] < pair[0])
+    time_s.len() > 2 && time_s.windows(2).all(|pair| pair[1] < pair[0])
 }
 
 /// That rows before a crash follow each other faster than any recorder keeps them, or for longer.
