@@ -336,7 +336,7 @@ fn saturated(force: &ForceHistory, peak_n: f64) -> Option<Flag> {
 
 /// The row from which a component stays at its largest size, and this size, N. A pulse that is constant from its first
 /// row to its last one does so too, and one whose numbers are coarse about its peak; neither has flanks that are cut off.
-fn held_peak(axis: &[f64], peak_n: f64) -> Option<(usize, f64)> {
+pub(super) fn held_peak(axis: &[f64], peak_n: f64) -> Option<(usize, f64)> {
     let limit_n = axis.iter().fold(0.0, |of: f64, value| of.max(value.abs()));
     let is_at_limit = |value: &&f64| value.abs() >= limit_n;
     let from = axis.iter().position(|value| is_at_limit(&value))?;

@@ -1,9 +1,10 @@
 //! Signals of one motion that do not go together in side, in time or in size: a steering that counts to the other side, a
-//! yaw rate that follows the yaw angle late, and one that is cut off at the limit of its sensor.
+//! yaw rate that follows the yaw angle late, one that is cut off at the limit of its sensor, and a yaw angle that is held.
 
 use std::collections::BTreeMap;
 
 use crate::data::course::DRIVING_M_S;
+use crate::data::quality::held_peak;
 use crate::data::{Channel, ColumnUse, Note, TimeSeries};
 use crate::numerics::{continued_rad, quantile_of_sorted, wrap_angle_rad};
 use crate::units::three_digits;
@@ -34,12 +35,28 @@ const ROWS_AT_LIMIT: usize = 5;
 const FARTHER: f64 = 1.15;
 const FARTHER_RAD: f64 = 0.05;
 
+/// Yaw rate from which one that stays at its largest value without a yaw angle beside it is at a limit, rad/s: the sensors
+/// of stability systems end at 75 to 100 deg/s and more, and a steady drive is slower.
+const LEAST_LIMIT_RAD_S: f64 = 1.0;
+
+/// Rows over which a yaw angle stays as it is, and by how much and how fast the car turns there by its yaw rate: more
+/// than an angle in whole degrees leaves out and than a gyroscope drifts by.
+const HELD_ROWS: usize = 5;
+const HELD_TURN_RAD: f64 = 0.05;
+const HELD_RATE_RAD_S: f64 = 0.1;
+
 /// What is in doubt about the signals of a motion.
 pub(super) fn notes(
     by_channel: &BTreeMap<Channel, ColumnUse>,
     series: &TimeSeries,
 ) -> impl Iterator<Item = Note> {
-    let texts = [steering_side(by_channel, series), late_yaw_rate(series), cut_yaw_rate(series)];
+    let texts = [
+        steering_side(by_channel, series),
+        late_yaw_rate(series),
+        cut_yaw_rate(series),
+        cut_yaw_rate_alone(series),
+        held_yaw(series),
+    ];
     texts.into_iter().flatten().map(|text| Note::Doubt { text })
 }
 
@@ -153,9 +170,104 @@ fn cut_yaw_rate(series: &TimeSeries) -> Option<String> {
     })
 }
 
+/// The same of a yaw rate without a yaw angle: it stays at its largest value between flanks that are cut off.
+fn cut_yaw_rate_alone(series: &TimeSeries) -> Option<String> {
+    let rate = series.get(Channel::YawRate).filter(|_| series.get(Channel::Yaw).is_none())?;
+    let largest = rate.iter().fold(0.0, |of: f64, rate| of.max(rate.abs()));
+    let (row, limit) = held_peak(rate, largest).filter(|_| largest >= LEAST_LIMIT_RAD_S)?;
+    Some(format!(
+        "the yaw rate stays at its largest value, {} deg/s, over several rows from {} s on, between steep flanks: its sensor \
+         was at its limit there, and the car turned faster",
+        three_digits(limit.to_degrees()),
+        three_digits(*series.time_s().get(row)?)
+    ))
+}
+
+/// That a yaw angle stays as it is over rows in which the car turns by its yaw rate: the longest such turn.
+fn held_yaw(series: &TimeSeries) -> Option<String> {
+    let (time_s, rate) = (series.time_s(), series.get(Channel::YawRate)?);
+    let yaw = series.get(Channel::Yaw)?;
+    let mut longest: Option<(f64, [usize; 2])> = None;
+    let mut from = 0;
+    for to in 1..=time_s.len() {
+        // A run of equal angles ends where the next one differs, and at the last row.
+        if yaw.get(to).is_some_and(|angle| *angle == yaw[from]) {
+            continue;
+        }
+        let last = to - 1;
+        let steps = from + 1..to;
+        let turned: f64 =
+            steps.map(|i| (time_s[i] - time_s[i - 1]) * (rate[i - 1] + rate[i]) / 2.0).sum();
+        let least = HELD_TURN_RAD.max(HELD_RATE_RAD_S * (time_s[last] - time_s[from]));
+        let is_longest = longest.is_none_or(|(other, _)| turned.abs() > other.abs());
+        if last - from >= HELD_ROWS && turned.abs() > least && is_longest {
+            longest = Some((turned, [from, last]));
+        }
+        from = to;
+    }
+    let (turned, [from, last]) = longest?;
+    Some(format!(
+        "the yaw angle stays at {} deg from {} to {} s, over which the car turns by {} deg by its yaw rate: it was held \
+         there; remove these rows, or read the yaw angle at its own instants",
+        three_digits(yaw[from].to_degrees()),
+        three_digits(time_s[from]),
+        three_digits(time_s[last]),
+        three_digits(turned.to_degrees())
+    ))
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::data::read_any_series;
+    use crate::data::{Channel, TimeSeries, read_any_series};
+
+    use super::{cut_yaw_rate_alone, held_yaw};
+
+    /// A car that spins by up to 4 rad/s to the right and comes to rest, in 200 rows.
+    fn spin(change: impl Fn(usize, [f64; 2]) -> [f64; 2]) -> TimeSeries {
+        let time_s: Vec<f64> = (0..200).map(|i| 0.02 * f64::from(i)).collect();
+        let row = |(i, t): (usize, &f64)| {
+            let angle = std::f64::consts::PI * t / 4.0;
+            // The integral of the rate.
+            change(i, [-16.0 / std::f64::consts::PI * (1.0 - angle.cos()), -4.0 * angle.sin()])
+        };
+        let rows: Vec<[f64; 2]> = time_s.iter().enumerate().map(row).collect();
+        let mut series = TimeSeries::new(time_s).unwrap();
+        series.insert(Channel::Yaw, rows.iter().map(|row| row[0]).collect()).unwrap();
+        series.insert(Channel::YawRate, rows.iter().map(|row| row[1]).collect()).unwrap();
+        series
+    }
+
+    #[test]
+    fn a_yaw_angle_that_is_held_while_the_car_turns_is_said() {
+        assert_eq!(held_yaw(&spin(|_, row| row)), None);
+        let text = held_yaw(&spin(|i, [yaw, rate]| match (80..90).contains(&i) {
+            true => [-3.0, rate],
+            false => [yaw, rate],
+        }));
+        let text = text.unwrap();
+        assert!(text.contains("from 1.6 to 1.78 s") && text.contains("-172 deg"), "{text}");
+        // An angle in whole degrees, and a gyroscope that drifts at rest.
+        let slow = |degrees: f64| degrees.round().to_radians();
+        assert_eq!(held_yaw(&spin(|i, _| [slow(0.1 * i as f64), 0.087])), None);
+        assert_eq!(held_yaw(&spin(|_, _| [1.0, 0.02])), None);
+    }
+
+    #[test]
+    fn a_yaw_rate_at_its_limit_is_said_without_a_yaw_angle_too() {
+        let alone = |change: &dyn Fn(f64) -> f64| {
+            let both = spin(|_, [yaw, rate]| [yaw, change(rate)]);
+            let mut series = TimeSeries::new(both.time_s().to_vec()).unwrap();
+            let rate = both.get(Channel::YawRate).unwrap().to_vec();
+            series.insert(Channel::YawRate, rate).unwrap();
+            cut_yaw_rate_alone(&series)
+        };
+        assert_eq!(alone(&|rate| rate), None);
+        // A steady turn, and a peak in whole degrees.
+        assert_eq!(alone(&|rate| (0.1 * rate).max(-0.2)), None);
+        assert_eq!(alone(&|rate| rate.to_degrees().round().to_radians()), None);
+        let text = alone(&|rate| rate.max(-2.0)).unwrap();
+        assert!(text.contains("115 deg/s") && text.contains("at its limit"), "{text}");
+    }
 
     /// What is said of a car that drives at 15 m/s through a bend to the left and one to the right.
     ///
