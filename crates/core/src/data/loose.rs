@@ -10,7 +10,7 @@ use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnUse, Columns, DataError, Dialect, ModelStart, Note,
     ReadSettings, Sampling, Table, Thousands, TimeSeries, VelocityAxes, antenna, clock, computed,
-    corrections, degrees, doubts, impulse, slow_columns, steering,
+    corrections, degrees, doubts, impulse, no_samples, slow_columns, steering,
 };
 
 /// Smallest number of rows of a time series.
@@ -265,6 +265,7 @@ fn load(
     kind: FileKind,
     map: Option<&ColumnMap>,
 ) -> Result<Loaded, DataError> {
+    no_samples::check(table, &columns.by_channel).map_err(|error| table.placed(error))?;
     let settings = map.map(|map| (*map.settings).clone()).unwrap_or_default();
     let read = match load_columns(table, columns.clone(), kind, map) {
         Err(error) if error.is_of_blank_cell() => {

@@ -46,6 +46,7 @@ mod letters;
 mod loose;
 mod mapped_column;
 mod marks;
+mod no_samples;
 mod note;
 mod open;
 mod path_speed;
