@@ -16,6 +16,8 @@ pub enum Separator {
     Tab,
     /// One semicolon, `;`.
     Semicolon,
+    /// One vertical bar, `|`.
+    Bar,
     /// Any number of spaces and tabs.
     Blanks,
     /// One comma, `,`.
@@ -35,13 +37,14 @@ pub struct Dialect {
 
 impl Separator {
     /// All separators, in the order of preference if several fit equally well.
-    pub const ALL: [Self; 4] = [Self::Tab, Self::Semicolon, Self::Blanks, Self::Comma];
+    pub const ALL: [Self; 5] = [Self::Tab, Self::Semicolon, Self::Bar, Self::Blanks, Self::Comma];
 
     /// Its name in the text of a map.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tab => "tab",
             Self::Semicolon => "semicolon",
+            Self::Bar => "bar",
             Self::Blanks => "space",
             Self::Comma => "comma",
         }
@@ -51,6 +54,7 @@ impl Separator {
         match self {
             Self::Tab => b'\t',
             Self::Semicolon => b';',
+            Self::Bar => b'|',
             Self::Blanks => b' ',
             Self::Comma => b',',
         }
@@ -252,6 +256,8 @@ mod tests {
             ("t;fx\n0,1;2,5\n", Separator::Semicolon, true),
             ("t;fx\n0.1;2.5\n", Separator::Semicolon, false),
             ("t\tfx\n0,1\t2,5\n", Separator::Tab, true),
+            ("t|fx|fy\n0.1|2|3\n", Separator::Bar, false),
+            ("t | fx | fy\n0,1 | 2,5 | 3\n", Separator::Bar, true),
             ("  t   fx\n  0.1  2.5\n", Separator::Blanks, false),
             ("t fx\n0,1 2,5\n", Separator::Blanks, true),
             ("\"t\",\"fx\"\n\"0.1\",\"2.5\"\n", Separator::Comma, false),

@@ -171,7 +171,7 @@ impl ReadSettings {
     fn take_sign(&mut self, name: &str, value: &str) -> Result<bool, MapError> {
         Ok(match name {
             "separator" => {
-                let expected = "comma, semicolon, tab or space";
+                let expected = "comma, semicolon, tab, bar or space";
                 let separator = Separator::ALL.into_iter().find(|of| of.name() == value);
                 let separator = separator.ok_or_else(|| wrong(name, value, expected))?;
                 self.separator.replace(separator).is_none()

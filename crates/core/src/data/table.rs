@@ -56,7 +56,7 @@ pub struct Table {
 
 impl Table {
     /// Reads a file as a table: a text file or a sheet of an Excel workbook. Its encoding is UTF-8, UTF-16 or Windows-1252, its separator comma,
-    /// semicolon, tab or blanks, its decimal sign a point or a comma. Comments, text above the
+    /// semicolon, tab, vertical bar or blanks, its decimal sign a point or a comma. Comments, text above the
     /// header and a row of units are recognised.
     ///
     /// # Errors
