@@ -6,8 +6,8 @@ use std::borrow::Cow;
 use csv::{ReaderBuilder, StringRecord, Trim};
 use serde::{Deserialize, Serialize};
 
-use crate::data::ReadSettings;
 use crate::data::marks::{Marks, Signs, Thousands, has_groups};
+use crate::data::{ReadSettings, spelling};
 
 /// The separator between two fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,8 +110,9 @@ impl Dialect {
         converted: Option<Separator>,
         settings: &ReadSettings,
     ) -> Self {
-        let is_number =
-            |field: &Cow<'_, str>| parse_number(field, true).is_some() || has_groups(field);
+        let is_number = |field: &Cow<'_, str>| {
+            parse_number(field, true).is_some() || has_groups(field) || has_unit(field)
+        };
         let score = |separator: &Separator| {
             let fields = lines.iter().flat_map(|line| split(line, *separator));
             let numbers = fields.filter(is_number);
@@ -169,6 +170,15 @@ pub(crate) fn comment(line: &str) -> Option<&str> {
         .iter()
         .find_map(|sign| line.strip_prefix(sign))
         .map(|rest| rest.trim_start_matches(['#', '%', '!', '$', '/']).trim())
+}
+
+/// Whether a cell holds a number with its unit, such as `12.3 m/s`.
+pub(super) fn has_unit(cell: &str) -> bool {
+    let is_of_number = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',');
+    let cell = cell.trim();
+    let at = cell.find(|c: char| !is_of_number(c)).unwrap_or(cell.len());
+    let (number, unit) = cell.split_at(at);
+    parse_number(number, true).is_some() && spelling::is_known_unit(unit.trim())
 }
 
 /// A number whose exponent of three digits has no letter before it, as Fortran writes `1.0-103`, with the

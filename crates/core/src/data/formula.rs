@@ -80,7 +80,8 @@ impl Formula {
             Self::Quaternion => "the columns w, x, y and z of a quaternion of length 1",
             Self::Course => "a course in degrees clockwise from north",
             Self::East | Self::North => {
-                "a latitude from −90° to 90° and a longitude from −180° to 180°, in degrees"
+                "a latitude from −90° to 90° and a longitude from −180° to 180°, in degrees, neither × 10⁷ nor as \
+                 ddmm.mmmm"
             }
         }
     }

@@ -63,6 +63,22 @@ fn a_header_and_a_row_of_units_that_differ_are_refused() {
     assert!(read(&format!("time;Fx [kN];Fy [kN]\ns;kN;kN\n{rows}"), "").is_ok());
 }
 
+/// What a person can mend in the file is said with the place.
+#[test]
+fn units_in_cells_a_second_header_and_scaled_degrees_name_the_remedy() {
+    for (text, place, words) in [
+        ("time,x,y\n0 s,0 m,0 m\n1 s,10 m,0 m\n", "f.csv:2:1", "unit into the header"),
+        ("time [s],x,y\n0,0 m,0\n1,10 m,0\n", "f.csv:2:2", "unit into the header"),
+        ("time,x,y\nChannel 1,Channel 2,Channel 3\n0,0,0\n1,10,0\n", "f.csv:2:1", "second line"),
+        ("time,lat,lon\n0,525200000,134100000\n1,525201000,134100000\n", "f.csv:2:2", "× 10⁷"),
+    ] {
+        let said = error(text, "");
+        assert!(said.contains(place) && said.contains(words), "{said}");
+    }
+    let other = error("time,x,y\n0,0,0\n1,n/a,0\n", "");
+    assert!(!other.contains("header"), "{other}");
+}
+
 /// A recorder samples speed and change of velocity at times of their own, and leaves the other cells blank.
 #[test]
 fn a_blank_cell_of_a_recorder_names_the_option_that_reads_it() {

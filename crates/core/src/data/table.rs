@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 use crate::data::budget::{MAX_CASES_BYTES, MAX_LINE_BYTES, MAX_TABLE_BYTES};
-use crate::data::dialect::{Dialect, Separator};
+use crate::data::dialect::{Dialect, Separator, has_unit};
 use crate::data::error::or_recorder;
 use crate::data::foreign::refuse_known_text;
 use crate::data::formats::{self, Converted, Said};
@@ -393,10 +393,19 @@ impl Table {
     ) -> DataError {
         let cell = self.cell(row_idx, column_idx);
         let is_header = self.header.names.get(column_idx).is_some_and(|name| *name == cell);
+        let has_no_number =
+            || (0..self.header.names.len()).all(|idx| self.number(row_idx, idx).is_none());
+        let is_second_header = || row_idx == 0 && self.n_rows() > 1 && has_no_number();
         let hint = match (cell.trim().is_empty(), is_header) {
             (true, _) => or_recorder(&self.header.names),
             (false, true) => {
                 "; the header stands here again: put the table below it into a file of its own"
+            }
+            (false, false) if has_unit(&cell) => {
+                "; write the unit into the header, as in \"speed [m/s]\", and numbers alone into the cells"
+            }
+            (false, false) if is_second_header() => {
+                "; if this is a second line of the header, remove it"
             }
             (false, false) => "",
         };
