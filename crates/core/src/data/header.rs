@@ -145,7 +145,7 @@ pub(super) fn check_cells<'a>(
 ///
 /// # Errors
 /// [`DataError::NoSuchLine`] if a line that the user has said is not among the first lines, or is
-/// blank.
+/// blank; [`DataError::Contradiction`] if a name in quotation marks goes on in the next line.
 pub(super) fn find_header<'a>(
     path: &Path,
     lines: &[Line<'a>],
@@ -172,10 +172,24 @@ pub(super) fn find_header<'a>(
         Some(HeaderLine::Line(line)) => Some(at_line(line, "the header")?),
         Some(HeaderLine::None) => None,
     };
+    if let Some(line) = names.map(|names| names.line).filter(|line| goes_on(line.text, dialect)) {
+        let what = format!(
+            "a name in quotation marks goes on in the line after {}: write the header in one line",
+            line.number
+        );
+        return Err(DataError::Contradiction { path: path.to_owned(), what });
+    }
     Ok(match names {
         Some(names) => below_names(&split, names, units, width),
         None => without_names(&split, width, first_number, units),
     })
+}
+
+/// Whether the quotation marks of a field are not closed in a line; a mark within a name may be that of inches.
+fn goes_on(text: &str, dialect: Dialect) -> bool {
+    let mut fields = text.split(char::from(dialect.separator.byte())).map(str::trim);
+    text.matches('"').count() % 2 == 1
+        && fields.any(|field| field.starts_with('"') && (field.len() == 1 || !field.ends_with('"')))
 }
 
 /// The cells of a comment that is labelled, such as `columns: time fx fy` or `name: time  name: fx`, without

@@ -79,6 +79,13 @@ fn units_in_cells_a_second_header_and_scaled_degrees_name_the_remedy() {
     assert!(!other.contains("header"), "{other}");
 }
 
+/// As spreadsheets write headers of several lines in one cell.
+#[test]
+fn a_quoted_header_over_several_lines_is_refused_with_the_remedy() {
+    let said = error("\"time\n[s]\",\"x\n[m]\",\"y\n[m]\"\n0,0,0\n1,10,0\n", "");
+    assert!(said.contains("write the header in one line"), "{said}");
+}
+
 /// A recorder samples speed and change of velocity at times of their own, and leaves the other cells blank.
 #[test]
 fn a_blank_cell_of_a_recorder_names_the_option_that_reads_it() {
