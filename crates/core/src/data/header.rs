@@ -187,9 +187,16 @@ pub(super) fn find_header<'a>(
 
 /// Whether the quotation marks of a field are not closed in a line; a mark within a name may be that of inches.
 fn goes_on(text: &str, dialect: Dialect) -> bool {
-    let mut fields = text.split(char::from(dialect.separator.byte())).map(str::trim);
-    text.matches('"').count() % 2 == 1
-        && fields.any(|field| field.starts_with('"') && (field.len() == 1 || !field.ends_with('"')))
+    let fields: Vec<&str> =
+        text.split(char::from(dialect.separator.byte())).map(str::trim).collect();
+    let is_opened =
+        |field: &str| field.starts_with('"') && (field.len() == 1 || !field.ends_with('"'));
+    let is_closed = |field: &str| field.ends_with('"') && !field.starts_with('"');
+    let is_odd = text.matches('"').count() % 2 == 1;
+    // A line amid such a header closes a name and opens another.
+    is_odd && fields.iter().any(|field| is_opened(field))
+        || fields.first().is_some_and(|field| is_closed(field))
+            && fields.last().is_some_and(|field| is_opened(field))
 }
 
 /// The cells of a comment that is labelled, such as `columns: time fx fy` or `name: time  name: fx`, without
