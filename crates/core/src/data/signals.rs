@@ -1,13 +1,15 @@
 //! Signals of one motion that do not go together in side, in time or in size: a steering that counts to the other side, a
-//! yaw rate that follows the yaw angle late, one that is cut off at the limit of its sensor, and a yaw angle that is held.
+//! yaw rate that follows the yaw angle late, one that is cut off at the limit of its sensor, a yaw angle that is held, and
+//! an acceleration whose unit is another than its speed has.
 
 use std::collections::BTreeMap;
 
 use crate::data::course::DRIVING_M_S;
+use crate::data::error::quoted;
 use crate::data::quality::held_peak;
 use crate::data::{Channel, ColumnUse, Note, TimeSeries};
 use crate::numerics::{continued_rad, quantile_of_sorted, wrap_angle_rad};
-use crate::units::three_digits;
+use crate::units::{STANDARD_GRAVITY_M_S2, three_digits};
 
 /// Duration of a window over which steering and turn are compared, s, and the least number of them.
 const WINDOW_S: f64 = 0.5;
@@ -45,6 +47,12 @@ const HELD_ROWS: usize = 5;
 const HELD_TURN_RAD: f64 = 0.05;
 const HELD_RATE_RAD_S: f64 = 0.1;
 
+/// Factor by which an acceleration in g that is read in m/s² misses that of the speed, what is left of the speed with it,
+/// and the changes of speed from which both are compared, m/s, each about their means.
+const G_FACTORS: std::ops::Range<f64> = 0.75 * STANDARD_GRAVITY_M_S2..1.3 * STANDARD_GRAVITY_M_S2;
+const LEFT_WITH_G: f64 = 0.3;
+const LEAST_SPEED_M_S: f64 = 0.5;
+
 /// What is in doubt about the signals of a motion.
 pub(super) fn notes(
     by_channel: &BTreeMap<Channel, ColumnUse>,
@@ -56,6 +64,7 @@ pub(super) fn notes(
         cut_yaw_rate(series),
         cut_yaw_rate_alone(series),
         held_yaw(series),
+        acceleration_in_g(by_channel, series),
     ];
     texts.into_iter().flatten().map(|text| Note::Doubt { text })
 }
@@ -216,6 +225,44 @@ fn held_yaw(series: &TimeSeries) -> Option<String> {
     ))
 }
 
+/// That an acceleration ahead that names no unit is in g, by the speed beside it.
+fn acceleration_in_g(
+    by_channel: &BTreeMap<Channel, ColumnUse>,
+    series: &TimeSeries,
+) -> Option<String> {
+    let column = by_channel.get(&Channel::Ax).filter(|column| !column.unit_is_stated)?;
+    let [term] = column.terms[..] else { return None };
+    let speed = series.get(Channel::Vx).or_else(|| series.get(Channel::Speed))?;
+    let (time_s, ahead) = (series.time_s(), series.get(Channel::Ax)?);
+    let mut by_ahead = vec![0.0; time_s.len()];
+    for i in 1..time_s.len() {
+        let mean = (ahead[i - 1] + ahead[i]) / 2.0;
+        by_ahead[i] = by_ahead[i - 1] + (time_s[i] - time_s[i - 1]) * mean;
+    }
+    let centred = |values: &[f64]| -> Vec<f64> {
+        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+        values.iter().map(|value| value - mean).collect()
+    };
+    let product = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+    let (speed, by_ahead) = (centred(speed), centred(&by_ahead));
+    let factor = product(&speed, &by_ahead) / product(&by_ahead, &by_ahead);
+    let left: Vec<f64> = speed.iter().zip(&by_ahead).map(|(v, a)| v - factor * a).collect();
+    let size = product(&speed, &speed).sqrt();
+    let is_compared = size > LEAST_SPEED_M_S * (speed.len() as f64).sqrt();
+    let is_in_g =
+        G_FACTORS.contains(&factor.abs()) && product(&left, &left).sqrt() < LEFT_WITH_G * size;
+    (is_compared && is_in_g).then(|| {
+        let is_negated = (term.sign < 0.0) != (factor < 0.0);
+        format!(
+            "column {} {} names no unit and is read in m/s²: by the speed it is in g (map ax={}{}:g)",
+            column.number,
+            quoted(&column.name),
+            if is_negated { "-" } else { "" },
+            term.number
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use crate::data::{Channel, TimeSeries, read_any_series};
@@ -250,6 +297,35 @@ mod tests {
         let slow = |degrees: f64| degrees.round().to_radians();
         assert_eq!(held_yaw(&spin(|i, _| [slow(0.1 * i as f64), 0.087])), None);
         assert_eq!(held_yaw(&spin(|_, _| [1.0, 0.02])), None);
+    }
+
+    #[test]
+    fn an_acceleration_in_g_without_a_unit_is_said() {
+        let said = |header: &str, acceleration: &dyn Fn(f64) -> f64| {
+            // Braked by 6 m/s² for two seconds of three.
+            let row = |i: u32| {
+                let t = 0.02 * f64::from(i);
+                let braked_s = (t - 0.5).clamp(0.0, 2.0);
+                let is_braked = (0.5..2.5).contains(&t);
+                let ahead = acceleration(if is_braked { -6.0 } else { 0.0 });
+                let x = 20.0 * t - 3.0 * braked_s * braked_s - 12.0 * (t - 2.5).max(0.0);
+                format!("{t},{x},0,{},{ahead}\n", 20.0 - 6.0 * braked_s)
+            };
+            let rows: String = (0..150).map(row).collect();
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("log.csv");
+            let text = format!("time [s],x [m],y [m],speed [m/s],{header}\n{rows}");
+            std::fs::write(&path, text).unwrap();
+            let loaded = read_any_series(&path, None).unwrap();
+            let notes = loaded.notes.iter().map(ToString::to_string);
+            notes.collect::<Vec<_>>().join("; ")
+        };
+        for (factor, map) in [(1.0, "map ax=5:g"), (-1.0, "map ax=-5:g")] {
+            let text = said("ax", &|ahead| factor * ahead / 9.806_65);
+            assert!(text.contains(map), "{text}");
+        }
+        assert!(!said("ax", &|ahead| ahead).contains("by the speed it is"), "m/s²");
+        assert!(!said("ax [g]", &|ahead| ahead / 9.806_65).contains("by the speed it is"), "g");
     }
 
     #[test]
