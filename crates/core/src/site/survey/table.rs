@@ -111,7 +111,24 @@ impl Columns {
 
 /// Whether a file that begins like this is a list of points.
 pub(super) fn is_table(head: &str) -> bool {
-    head.lines().next().and_then(Columns::from_header).is_some()
+    let first = head.lines().next();
+    first.and_then(Columns::from_header).is_some() || first.is_some_and(is_point)
+}
+
+/// Whether a line is a point without a header above it: its number or name, three coordinates with decimals, and a
+/// code. In which order they are the line does not say.
+fn is_point(line: &str) -> bool {
+    let Some(separator) = [';', '\t', ','].into_iter().find(|of| line.contains(*of)) else {
+        return false;
+    };
+    let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
+    let [name, a, b, c, code] = cells[..] else { return false };
+    let is_coordinate = |cell: &str| {
+        let cell = if separator == ',' { cell.to_owned() } else { cell.replace(',', ".") };
+        cell.contains('.') && cell.parse::<f64>().is_ok_and(f64::is_finite)
+    };
+    let is_name = name.chars().all(char::is_alphanumeric) && !name.is_empty() && name != "0";
+    is_name && [a, b, c].into_iter().all(is_coordinate) && code.starts_with(char::is_alphabetic)
 }
 
 /// Reads the text of a table.
@@ -123,7 +140,9 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
     let text = text.trim_start_matches('\u{feff}');
     let columns = text.lines().next().and_then(Columns::from_header);
     let columns = columns.ok_or_else(|| {
-        wrong(path, Some(1), &"no header names E and N, with a name or a code (name,E,N,Z,code)")
+        let expected = "no header names E and N, with a name or a code: write name,N,E,Z,code above the points, or \
+                        name,E,N,Z,code if their eastings stand first";
+        wrong(path, Some(1), &expected)
     })?;
     let lengths_m = columns.lengths_m(path, options)?;
     let mut builder = ReaderBuilder::new();
@@ -263,9 +282,16 @@ mod tests {
             "Punkt;Rechtswert [m];Hochwert [m];Höhe [m]",
             "point_no\teasting_ft\tnorthing_ft\tdescription",
             "id,x,y,z,code",
+            // Points without a header, which are asked for it.
+            "101,5423456.78,512345.12,101.3,KERB1",
+            "A7;1000,25;2000,50;101,30;Baum",
         ] {
             assert!(is_table(header), "{header}");
         }
+        let headerless = "101,5423456.78,512345.12,101.3,KERB1\n";
+        let options = SurveyOptions::default();
+        let error = read(Path::new("points.csv"), headerless, &options).unwrap_err().to_string();
+        assert!(error.contains("write name,N,E,Z,code above"), "{error}");
         for header in [
             "t,x,y",
             "t (s);x (m);y (m);code",
@@ -276,6 +302,9 @@ mod tests {
             "fx,fy",
             "E,N",
             "frame,e,n,name",
+            "0.1,5.25,2.5,101.3,ok",
+            "1,5.25,2.5,101.3,7",
+            "1,5,2,101,ok",
         ] {
             assert!(!is_table(header), "{header}");
         }
