@@ -340,7 +340,7 @@ pub enum DataError {
         what: &'static str,
     },
     /// A row has more or fewer fields than the header.
-    #[error("{}:{line}: has {got} fields, the header has {expected}; complete the row or remove it", path.display())]
+    #[error("{}:{line}: has {got} fields, the header has {expected}; complete the row or remove it{hint}", path.display())]
     RaggedRow {
         /// The file that was read or written.
         path: PathBuf,
@@ -350,6 +350,8 @@ pub enum DataError {
         expected: usize,
         /// Number of fields in the row.
         got: usize,
+        /// What else helps, of fields between blanks; empty for others.
+        hint: &'static str,
     },
     /// There are too few rows for a time series.
     #[error("{}:{line}: rows of numbers below the header: {got}, expected at least {expected}", path.display())]
@@ -715,7 +717,8 @@ mod tests {
             expected: "a finite number in kN".into(),
         };
         let empty = DataError::Empty { path: path.clone() };
-        let row = DataError::RaggedRow { path: path.clone(), line: 3, expected: 2, got: 4 };
+        let row =
+            DataError::RaggedRow { path: path.clone(), line: 3, expected: 2, got: 4, hint: "" };
         for (error, text) in [
             (
                 cell,

@@ -86,6 +86,16 @@ fn a_quoted_header_over_several_lines_is_refused_with_the_remedy() {
     assert!(said.contains("write the header in one line"), "{said}");
 }
 
+/// Of columns of fixed widths a cell may be empty, or a name may be two words.
+#[test]
+fn a_row_between_blanks_with_other_fields_names_what_divides_them() {
+    let rows = "0.0  0.0  0.0  start\n1.0  10.0  0.0\n2.0  20.0  0.0  end\n";
+    let said = error(&format!("time  x  y  note\n{rows}"), "");
+    assert!(said.contains("f.csv:3: ") && said.contains("with semicolons"), "{said}");
+    let said = error("time,x,y\n0,0,0\n1,10\n", "");
+    assert!(said.ends_with("complete the row or remove it"), "{said}");
+}
+
 /// A recorder samples speed and change of velocity at times of their own, and leaves the other cells blank.
 #[test]
 fn a_blank_cell_of_a_recorder_names_the_option_that_reads_it() {

@@ -13,6 +13,10 @@ use crate::data::dialect::{Dialect, Separator, comment};
 use crate::data::header::check_cells;
 use crate::data::marks::{Marks, Thousands};
 
+/// What helps where a name or a cell of a table of fixed widths has blanks, or none but them.
+const BETWEEN_BLANKS: &str = "; blanks divide the fields: names must not contain any nor cells be empty, or write the \
+                              table with semicolons";
+
 /// The rows of a table.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
@@ -66,7 +70,8 @@ impl Rows {
                 n_with_text_beyond += 1;
             } else if got != n_columns {
                 let (path, line) = (path.to_owned(), line());
-                return Err(DataError::RaggedRow { path, line, expected: n_columns, got });
+                let hint = if separator == Separator::Blanks { BETWEEN_BLANKS } else { "" };
+                return Err(DataError::RaggedRow { path, line, expected: n_columns, got, hint });
             }
             starts.push((body + start) as u32);
         }
