@@ -71,6 +71,7 @@ mod workspaces;
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock};
+use std::time::Duration;
 
 use eframe::CreationContext;
 use eframe::wgpu::DeviceType;
@@ -331,6 +332,7 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
+        self.finish_writes();
         if let (Some(store), Ok(text)) = (&mut self.store, self.state.save()) {
             store.finish(&text);
         }
@@ -339,6 +341,18 @@ impl eframe::App for App {
 }
 
 impl App {
+    /// Waits until what is being written is in its file, since the end of the program ends its threads.
+    fn finish_writes(&mut self) {
+        const POLL: Duration = Duration::from_millis(5);
+        let context = Context::default();
+        while self.state.session.tasks.has_writes() {
+            for command in self.state.session.tasks.poll() {
+                self.state.apply(command, &context);
+            }
+            std::thread::sleep(POLL);
+        }
+    }
+
     /// Stores the state for the next start, and says once if it cannot be stored.
     fn keep_state(&mut self, context: &Context) {
         let Self { state, store: Some(store), state_text, is_storable, .. } = self else { return };

@@ -8,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use egui::Context;
@@ -18,7 +19,8 @@ use crate::app::reading::ReadingRecord;
 use impactlab_core::jobs::{Job, Progress, ProgressCallback};
 
 /// Which work a task does. There is one task of each at a time; a new one takes the place of the other,
-/// which is cancelled and whose result never comes.
+/// which is cancelled and whose result never comes. What writes is not cancelled by another of its kind,
+/// which begins once the result of the first was received: nothing is lost, and the later one stays.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum TaskKey {
     /// A path that is opened is read and checked.
@@ -110,12 +112,20 @@ impl<T: Send + 'static> Work for Running<T> {
     }
 }
 
+/// A task that is running, or that waits for the one before.
+struct Task {
+    key: TaskKey,
+    work: Box<dyn Work>,
+    /// Dropped with this task: then the one that waits for it begins.
+    next: Option<Sender<()>>,
+}
+
 /// The tasks that are running.
 #[derive(Default)]
 pub struct Tasks {
     /// The window that is drawn again when a task has news; `None` without a window.
     window: Option<Context>,
-    running: Vec<(TaskKey, Box<dyn Work>)>,
+    running: Vec<Task>,
     /// The commands of tasks that could not be started.
     ended: Vec<Command>,
     /// Where it is written down what is being read.
@@ -142,7 +152,7 @@ impl Tasks {
     ///
     /// - `coming`: what will be read besides.
     fn write_reading(&mut self, coming: Option<&TaskKey>) {
-        let running = self.running.iter().map(|(key, _)| key);
+        let running = self.running.iter().map(|task| &task.key);
         self.reading.write(running.chain(coming).filter_map(TaskKey::read_path));
     }
 
@@ -158,6 +168,7 @@ impl Tasks {
         then: impl FnOnce(Result<T, String>) -> C + 'static,
     ) {
         self.write_reading(Some(&key));
+        let work = after(self.earlier(&key), work);
         let job = Job::spawn(key.thread_name(), self.waker(), work);
         self.add(key, job, then);
     }
@@ -169,8 +180,18 @@ impl Tasks {
         work: impl FnOnce(&mut ProgressCallback<'_>) -> Result<T, String> + Send + 'static,
         then: impl FnOnce(Result<T, String>) -> C + 'static,
     ) {
+        let work = after(self.earlier(&key), work);
         let job = Job::spawn_in_background(key.thread_name(), self.waker(), work);
         self.add(key, job, then);
+    }
+
+    /// What ends once the result of the latest task of this kind was received, if that one writes.
+    fn earlier(&mut self, key: &TaskKey) -> Option<Receiver<()>> {
+        let is_same = |task: &&mut Task| key.is_write() && task.key == *key;
+        let latest = self.running.iter_mut().rev().find(is_same)?;
+        let (next, end) = channel();
+        latest.next = Some(next);
+        Some(end)
     }
 
     fn waker(&self) -> impl Fn() + Send + 'static {
@@ -184,11 +205,14 @@ impl Tasks {
         job: std::io::Result<Job<Result<T, String>>>,
         then: impl FnOnce(Result<T, String>) -> C + 'static,
     ) {
-        self.stop(&key);
+        if !key.is_write() {
+            self.stop(&key);
+        }
         match job {
             Ok(job) => {
                 let then: Then<T> = Box::new(move |result| then(result).into());
-                self.running.push((key, Box::new(Running { job, then: Some(then) })));
+                let work = Box::new(Running { job, then: Some(then) });
+                self.running.push(Task { key, work, next: None });
             }
             Err(error) => self.ended.extend(then(Err(error.to_string())).into()),
         }
@@ -197,7 +221,7 @@ impl Tasks {
     /// Receives what the tasks have found, as commands, in the order in which they were started.
     pub fn poll(&mut self) -> Vec<Command> {
         let mut commands = std::mem::take(&mut self.ended);
-        self.running.retain_mut(|(_, work)| match work.poll() {
+        self.running.retain_mut(|task| match task.work.poll() {
             None => true,
             Some(command) => {
                 commands.extend(command);
@@ -227,29 +251,61 @@ impl Tasks {
 
     /// Cancels a task whose result is not wanted any more: it ends without a command.
     pub fn stop(&mut self, key: &TaskKey) {
-        self.running.retain(|(of, _)| of != key);
+        self.running.retain(|task| task.key != *key);
         self.write_reading(None);
     }
 
     /// Whether a file is being written of what is shown.
     pub fn is_writing(&self) -> bool {
-        self.running.iter().any(|(key, _)| matches!(key, TaskKey::Write(_)))
+        self.running.iter().any(|task| matches!(task.key, TaskKey::Write(_)))
+    }
+
+    /// Whether anything is being written that would be lost if the program ended.
+    pub(in crate::app) fn has_writes(&self) -> bool {
+        self.running.iter().any(|task| task.key.is_write())
     }
 
     /// The file of the film that is being made.
     pub fn film(&self) -> Option<&Path> {
-        self.running.iter().find_map(|(key, _)| match key {
+        self.running.iter().find_map(|task| match &task.key {
             TaskKey::Film(path) => Some(path.as_path()),
             _ => None,
         })
     }
 
     fn get(&self, key: &TaskKey) -> Option<&dyn Work> {
-        self.running.iter().find(|(of, _)| of == key).map(|(_, work)| &**work)
+        self.running.iter().find(|task| task.key == *key).map(|task| &*task.work)
+    }
+}
+
+/// Work that begins once what `end` belongs to has ended.
+fn after<T: Send + 'static>(
+    end: Option<Receiver<()>>,
+    work: impl FnOnce(&mut ProgressCallback<'_>) -> Result<T, String> + Send + 'static,
+) -> impl FnOnce(&mut ProgressCallback<'_>) -> Result<T, String> + Send + 'static {
+    move |report: &mut ProgressCallback<'_>| {
+        // Nothing is ever sent: this ends when the other side is dropped.
+        let _ = end.map(|end| end.recv());
+        work(report)
     }
 }
 
 impl TaskKey {
+    /// Whether the task writes what the user, or the window by itself, wants to keep. A film is stopped
+    /// by the user, and a sweep goes on from its chunks.
+    fn is_write(&self) -> bool {
+        matches!(
+            self,
+            Self::Write(_)
+                | Self::SaveCase
+                | Self::SaveModel(_)
+                | Self::KeepModel(..)
+                | Self::KeepResult(_)
+                | Self::PutIntoArchive(_)
+                | Self::MergeSweep
+        )
+    }
+
     /// The path that is read for the state at each start, if the task does that.
     fn read_path(&self) -> Option<&Path> {
         match self {
@@ -344,5 +400,35 @@ mod tests {
         assert!(settled(&mut tasks).is_empty());
         tasks.start(TaskKey::FileDialog, |_| Ok(()), |_| None::<Command>);
         assert!(settled(&mut tasks).is_empty());
+    }
+
+    /// Two saves in quick succession wrote side by side: the older text could be the last in the file,
+    /// and nobody was told if the first failed.
+    #[test]
+    fn what_writes_is_neither_dropped_nor_overtaken_by_the_next() {
+        let (mut tasks, order) = (Tasks::default(), Arc::new(std::sync::Mutex::new(Vec::new())));
+        let (sender, waits) = channel::<()>();
+        let written = Arc::clone(&order);
+        let first = move |_: &mut ProgressCallback<'_>| {
+            let _ = waits.recv();
+            written.lock().unwrap().push(1);
+            Err::<&str, _>("disk full".to_owned())
+        };
+        tasks.start(TaskKey::SaveCase, first, command_of);
+        for number in [2, 3] {
+            let written = Arc::clone(&order);
+            let next = move |_: &mut ProgressCallback<'_>| {
+                written.lock().unwrap().push(number);
+                Ok("written")
+            };
+            tasks.start(TaskKey::SaveCase, next, command_of);
+        }
+        std::thread::sleep(Duration::from_millis(50));
+        assert!(tasks.poll().is_empty() && order.lock().unwrap().is_empty());
+        assert!(tasks.has_writes());
+        drop(sender);
+        assert_eq!(settled(&mut tasks), ["Error disk full", "Info written", "Info written"]);
+        assert_eq!(*order.lock().unwrap(), [1, 2, 3]);
+        assert!(!tasks.has_writes());
     }
 }

@@ -124,7 +124,7 @@ impl State {
             reasons.push("A film that is being made is stopped and not written.".to_owned());
         }
         if tasks.is_writing() || tasks.is_running(&TaskKey::SaveCase) {
-            reasons.push("A file is still being written.".to_owned());
+            reasons.push("A file is still being written; the window closes once it is.".to_owned());
         }
         reasons
     }

@@ -370,6 +370,10 @@ impl State {
     /// Whether saving to the case's own file would replace what somebody else has written there since.
     pub(in crate::app) fn is_case_file_foreign(&self) -> bool {
         let Some(path) = &self.case.path else { return false };
+        if self.session.tasks.is_running(&TaskKey::SaveCase) {
+            // What is in the file at this moment may be what this window has just written.
+            return false;
+        }
         match read_utf8(path, MAX_RESULTS_BYTES) {
             Ok(text) => self.case.on_disk.as_ref() != Some(&text),
             Err(_) => path.exists(),
