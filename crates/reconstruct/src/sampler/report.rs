@@ -11,7 +11,7 @@ pub enum SamplerStage {
     Posterior,
 }
 
-/// The progress of a run, reported after each batch of evaluations.
+/// The progress of a run, reported after each batch of evaluations, and within a batch that takes long.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SamplerReport<'a> {
     /// What is being done.

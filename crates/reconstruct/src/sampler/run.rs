@@ -1,6 +1,7 @@
 //! The run from the prior to the posterior.
 
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 use rand::{Rng, RngExt};
 
@@ -55,6 +56,16 @@ const FIT_PARTICLES: usize = 4000;
 
 /// Parts of the particles of the answer that are evaluated, and shown, at a time.
 const BATCHES: usize = 8;
+
+/// Particles that are evaluated at once before it is known how long they take.
+const PIECE: usize = 32;
+
+/// The same at the least.
+const MIN_PIECE: usize = 8;
+
+/// Time that the particles that are evaluated at once should take. A run whose particles take longer is
+/// reported, and can be stopped, within a batch.
+const PIECE_TIME: [Duration; 2] = [Duration::from_millis(250), Duration::from_secs(1)];
 
 /// Effective sample size from which particles are said to be of the posterior.
 const MIN_POSTERIOR_ESS: f64 = 20.0;
@@ -113,7 +124,8 @@ pub fn sample_from(
         None => None,
     };
     let n_started = start.map_or(0, |_| STARTED_DRAWS[1] * settings.n_particles);
-    let mut run = Run { target, settings, report, population: Population::default(), n_started };
+    let population = Population::default();
+    let mut run = Run { target, settings, report, population, n_started, piece: PIECE };
     let mut flow = match saved {
         Some(population) => {
             run.population = population;
@@ -144,6 +156,9 @@ struct Run<'a, T: ?Sized> {
     population: Population,
     /// Number of draws from a start.
     n_started: usize,
+    /// Number of particles that are evaluated at once. It follows from how long they take, and no number
+    /// of the answer follows from it.
+    piece: usize,
 }
 
 impl<T: Target + ?Sized> Run<'_, T> {
@@ -166,6 +181,54 @@ impl<T: Target + ?Sized> Run<'_, T> {
         }
     }
 
+    /// Evaluates the first ones of some particles, and says whether they took so long that the run should be
+    /// reported before the others.
+    fn evaluate_some(&mut self, z: &[Vec<f64>]) -> Result<(Vec<Likelihood>, bool), SamplerError> {
+        let start = Instant::now();
+        let likelihood = self.evaluate(&z[..self.piece.min(z.len())])?;
+        let ([short, long], passed) = (PIECE_TIME, start.elapsed());
+        if passed > long {
+            self.piece = (self.piece / 2).max(MIN_PIECE);
+        } else if passed < short {
+            self.piece = (2 * self.piece).min(self.batch().max(PIECE));
+        }
+        Ok((likelihood, passed >= short))
+    }
+
+    /// Evaluates particles of the prior, and reports them. A run that is stopped has an answer as soon as the
+    /// evidence is possible for one particle: then the ones that were not evaluated are dropped.
+    ///
+    /// - `n_drawn`: how many were drawn before.
+    fn evaluate_prior(
+        &mut self,
+        z: &mut Vec<Vec<f64>>,
+        n_drawn: usize,
+    ) -> Result<(Vec<Likelihood>, ControlFlow<()>), SamplerError> {
+        let mut is_possible = self.population.is_possible();
+        let mut likelihood = Vec::with_capacity(z.len());
+        let mut log_likelihood = Vec::with_capacity(z.len());
+        let mut flow = ControlFlow::Continue(());
+        while likelihood.len() < z.len() && (flow.is_continue() || !is_possible) {
+            let (some, is_slow) = self.evaluate_some(&z[likelihood.len()..])?;
+            log_likelihood.extend(some.iter().map(|of| of.log));
+            likelihood.extend(some);
+            is_possible |= log_likelihood.iter().any(|value: &f64| value.is_finite());
+            let n = likelihood.len();
+            if flow.is_continue() && (is_slow || n == z.len()) {
+                flow = (self.report)(SamplerReport {
+                    stage: SamplerStage::Prior,
+                    temperature: 0.0,
+                    n_evaluations: n_drawn + n,
+                    ess: None,
+                    z: &z[..n],
+                    log_likelihood: &log_likelihood,
+                });
+            }
+        }
+        z.truncate(likelihood.len());
+        Ok((likelihood, flow))
+    }
+
     /// Draws from the prior, until the evidence is possible for some of the particles.
     ///
     /// - `per_particle`: draws for each particle of the answer.
@@ -184,19 +247,12 @@ impl<T: Target + ?Sized> Run<'_, T> {
                 break;
             }
             let batch = self.batch().min(goal - n_drawn);
-            let z: Vec<Vec<f64>> = (0..batch).map(|_| standard_normals(dim, &mut rng)).collect();
-            let likelihood = self.evaluate(&z)?;
-            let log_likelihood: Vec<f64> = likelihood.iter().map(|of| of.log).collect();
-            n_possible += log_likelihood.iter().filter(|value| value.is_finite()).count();
-            n_drawn += batch;
-            flow = (self.report)(SamplerReport {
-                stage: SamplerStage::Prior,
-                temperature: 0.0,
-                n_evaluations: n_drawn,
-                ess: None,
-                z: &z,
-                log_likelihood: &log_likelihood,
-            });
+            let mut z: Vec<Vec<f64>> =
+                (0..batch).map(|_| standard_normals(dim, &mut rng)).collect();
+            let (likelihood, after_batch) = self.evaluate_prior(&mut z, n_drawn)?;
+            flow = after_batch;
+            n_possible += likelihood.iter().filter(|of| of.log.is_finite()).count();
+            n_drawn += z.len();
             self.population.add_prior(z, likelihood);
         }
         if !self.population.is_possible() {
@@ -248,10 +304,15 @@ impl<T: Target + ?Sized> Run<'_, T> {
         let z: Vec<Vec<f64>> = (0..n).map(|_| mixture.draw(rng)).collect();
         let mut likelihood = Vec::with_capacity(n);
         for batch in z.chunks(self.batch()) {
-            likelihood.extend(self.evaluate(batch)?);
-            let n_evaluations = self.population.n_draws() + likelihood.len();
-            if (self.report)(shown.report(n_evaluations)).is_break() {
-                return Ok(ControlFlow::Break(()));
+            let end = likelihood.len() + batch.len();
+            while likelihood.len() < end {
+                let (some, is_slow) = self.evaluate_some(&z[likelihood.len()..end])?;
+                likelihood.extend(some);
+                let n_evaluations = self.population.n_draws() + likelihood.len();
+                let is_reported = is_slow || likelihood.len() == end;
+                if is_reported && (self.report)(shown.report(n_evaluations)).is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
             }
         }
         self.population.add(z, likelihood, mixture);

@@ -247,6 +247,30 @@ fn what_was_sampled_until_a_cancellation_is_kept_and_said_to_be_no_posterior() {
     }
 }
 
+/// A target of which some particles at once take a third of a second.
+struct Slow;
+
+impl Target for Slow {
+    fn dim(&self) -> usize {
+        1
+    }
+
+    fn log_likelihoods(&self, z: &[Vec<f64>]) -> Vec<f64> {
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        z.iter().map(|z| normal(z[0], 1.0, 0.5)).collect()
+    }
+}
+
+/// Motions through several contacts take so long that a batch of them went on for half a minute after a run
+/// was cancelled.
+#[test]
+fn a_run_of_slow_motions_stops_within_a_batch() {
+    let stop = &mut |_: SamplerReport<'_>| ControlFlow::Break(());
+    let stopped = sample(&Slow, &seed(1), None, stop).unwrap();
+    assert!(stopped.is_stopped && stopped.n_evaluations < 100, "{}", stopped.n_evaluations);
+    assert_eq!(stopped.z.len(), 2000);
+}
+
 #[test]
 fn a_posterior_of_which_there_is_hardly_a_draw_is_answered_as_that_of_noisier_measurements() {
     let settings = SamplerSettings { n_particles: 400, max_evaluations: 4500, ..seed(3) };
