@@ -98,7 +98,7 @@ pub struct MotionForecast {
     /// The striking vehicle and the contacts, where both vehicles are followed through all of them.
     pub both: Option<Box<BothVehicles>>,
     /// How far the response network holds for the forecast: mean over forces and vehicles, with what
-    /// lies outside for the median of them.
+    /// lies outside for the vehicle by its data sheet under the usual force.
     pub applicability: Applicability,
 }
 
@@ -266,6 +266,10 @@ pub fn forecast_forces(
     };
     let Settled { distribution, paths, outcome, rest, applicabilities } =
         question.settle().ok_or(MotionForecastError::Diverged)?;
+    let applicability = match &draws {
+        Some(_) => of_drawn(&applicabilities, &by_sheet(response, &question)?),
+        None => usual(applicabilities.iter().collect()),
+    };
     let central = mean_of(&paths);
     if !central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())) {
         return Err(MotionForecastError::Diverged);
@@ -287,13 +291,13 @@ pub fn forecast_forces(
         force: None,
         n_vehicles: draws.map_or(0, |draws| draws.len()),
         sensitivity,
-        applicability: usual(applicabilities.iter().collect()),
+        applicability,
         both: None,
     })
 }
 
 /// What lies outside for the median of several forces and vehicles, with the mean of their values.
-pub(super) fn usual(mut all: Vec<&Applicability>) -> Applicability {
+fn usual(mut all: Vec<&Applicability>) -> Applicability {
     all.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let mean =
         all.iter().map(|applicability| applicability.value).sum::<f64>() / all.len().max(1) as f64;
@@ -301,6 +305,12 @@ pub(super) fn usual(mut all: Vec<&Applicability>) -> Applicability {
         Some(median) => Applicability { value: mean, ..(*median).clone() },
         None => Applicability::whole(),
     }
+}
+
+/// How far the network holds over the vehicles that were drawn. What lies outside is told of the vehicle as it is
+/// by its data sheet: a value that was drawn is none of it.
+pub(super) fn of_drawn(drawn: &[Applicability], by_sheet: &Applicability) -> Applicability {
+    Applicability { outside: by_sheet.outside.clone(), ..usual(drawn.iter().collect()) }
 }
 
 /// The draws of what is not known of vehicle and road, at least one for each force; `None` if that is
@@ -334,6 +344,21 @@ fn predictors(
     Ok(made?)
 }
 
+/// How far the network holds for the vehicle as it is by its data sheet, under the usual force.
+fn by_sheet(
+    response: &ResponseModel,
+    question: &ToRest<'_>,
+) -> Result<Applicability, MotionForecastError> {
+    let ToRest { forces, struck, limit_s, .. } = *question;
+    let predictor = response.predictor(&struck.vehicle)?;
+    let under = |force: &ForceHistory| {
+        let inputs = struck.inputs(force, limit_s)?;
+        Some(predictor.applicability(&struck.initial, &inputs))
+    };
+    let all: Vec<Applicability> = forces.par_iter().filter_map(under).collect();
+    Ok(usual(all.iter().collect()))
+}
+
 /// Rotates a curve from axes along the struck vehicle's initial heading into world axes.
 pub(crate) fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     let mut history = curve.to_history();
@@ -362,12 +387,21 @@ mod tests {
     use crate::analysis::MotionBands;
     use crate::{Event, ForceSource, Library, MotionSource, PredictMotionRequest, Question};
     use impactlab_core::data::Sampling;
-    use impactlab_core::vehicle::Preset;
+    use impactlab_core::vehicle::{DataSheet, Preset, SheetQuantity};
     use impactlab_networks::response::{RESISTANCE_SCATTER, RestSearch, SettledMotion};
     use impactlab_networks::shipped::ModelSource;
 
     /// The forecast of a car that is pushed to the side at its rear, by forces of 16 to 24 kN.
     fn pushed(n_forces: usize) -> MotionForecast {
+        pushed_car(Preset::Reference.parameters(), n_forces, 0)
+    }
+
+    /// The same of some car.
+    fn pushed_car(
+        vehicle: VehicleParameters,
+        n_forces: usize,
+        n_vehicles: usize,
+    ) -> MotionForecast {
         let force = |i: usize| ForceHistory {
             axes: ForceAxes::World,
             sampling: Sampling::Instant,
@@ -377,7 +411,7 @@ mod tests {
             mz_n_m: None,
         };
         let struck = StruckVehicle {
-            vehicle: Preset::Reference.parameters(),
+            vehicle,
             initial: VehicleState::driving_straight(15.0),
             contact: ContactPoint { x_body_m: -1.5, y_body_m: -0.8, height_m: 0.5 },
             controls: Controls::default(),
@@ -385,7 +419,7 @@ mod tests {
         };
         let settings = MotionForecastSettings {
             n_curves: n_forces,
-            n_vehicles: 0,
+            n_vehicles,
             duration_s: 2.0,
             until_rest: false,
             road: None,
@@ -410,6 +444,16 @@ mod tests {
             assert!((many - few).abs() < 0.37 * std, "{axis}: {few} {many}, deviation {std}");
             assert!((of_few / std - 1.0).abs() < 0.3, "{axis}: deviations {of_few}, {std}");
         }
+    }
+
+    /// “front cornering coefficient 14.36” was told of a car that has another by its sheet: it was that of a draw.
+    #[test]
+    fn what_lies_outside_is_told_of_the_car_and_not_of_a_draw() {
+        let heavy = DataSheet::default().with(SheetQuantity::Mass, 4500.0).vehicle();
+        let [known, drawn] = [0, 20].map(|n| pushed_car(heavy.clone(), 1, n));
+        assert_eq!((known.n_vehicles, drawn.n_vehicles), (0, 20));
+        assert!(!known.applicability.outside.is_empty());
+        assert_eq!(drawn.applicability.outside, known.applicability.outside);
     }
 
     #[test]

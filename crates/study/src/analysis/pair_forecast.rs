@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::analysis::contact_pair::{ContactPair, manoeuvres};
 use crate::analysis::contacts::ContactsOutcome;
-use crate::analysis::motion_forecast::{drawn_vehicles, usual};
+use crate::analysis::motion_forecast::{drawn_vehicles, of_drawn};
 use crate::analysis::motion_to_rest::SettledDraws;
 use crate::analysis::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, RestOutcome,
@@ -290,12 +290,6 @@ impl BothVehiclesQuestion<'_> {
         };
         inputs.ok_or(MotionForecastError::Diverged)
     }
-}
-
-/// How far the network holds over the vehicles that were drawn. What lies outside is told of the vehicle as it is
-/// by its data sheet: a value that was drawn is none of it.
-fn of_drawn(drawn: &[Applicability], by_sheet: &Applicability) -> Applicability {
-    Applicability { outside: by_sheet.outside.clone(), ..usual(drawn.iter().collect()) }
 }
 
 /// The force on the striking vehicle of a force on the struck one.
