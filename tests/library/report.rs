@@ -54,7 +54,12 @@ pub fn pit() -> &'static (ReportDocument, CaseReport) {
 
 /// A case that reconstructs a staged collision, in a folder of its own.
 fn reconstruction(folder: &Path) -> CaseFile {
-    let staged = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/staged/evidence/s03.toml");
+    reconstruction_of("datasets/staged/evidence/s03.toml", folder)
+}
+
+/// The same of other evidence.
+fn reconstruction_of(evidence: &str, folder: &Path) -> CaseFile {
+    let staged = Path::new(env!("CARGO_MANIFEST_DIR")).join(evidence);
     let evidence = folder.join("evidence.toml");
     fs::copy(staged, &evidence).expect("copied");
     let question = ReconstructRequest {
@@ -260,6 +265,15 @@ fn a_reconstruction_tells_evidence_courses_budget_and_prior() {
     assert!(texts(document).iter().filter(|text| *text == "estimated by rule").count() > 20);
     let folder = case.files[0].path.parent().expect("a folder").display().to_string();
     assert!(!document.to_markdown().contains(&folder), "a path of this machine is in the report");
+}
+
+/// That the cars meet again in most motions, and that this was not followed, was a note of the annex.
+#[test]
+fn a_reconstruction_that_leaves_later_contacts_out_says_so_in_the_opinion() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = reconstruction_of("docs/guide/examples/position_alone.toml", folder.path());
+    assert_says(&report(&case, &english()).0, "Later contacts of this case");
+    assert!(!texts(&staged().2).iter().any(|of| of.contains("Later contacts of this case")));
 }
 
 #[test]

@@ -222,6 +222,7 @@ mod tests {
             held: None,
             is_doubtful: false,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         };
         Part {
             opinion: Some(opinion),

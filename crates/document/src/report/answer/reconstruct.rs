@@ -218,6 +218,7 @@ mod tests {
             held: None,
             is_doubtful: false,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         };
         let (wording, paths) = (Wording::english(UnitSystem::Si), ShownPaths::default());
         let grounds = Grounds::default();

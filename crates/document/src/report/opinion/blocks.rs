@@ -61,7 +61,7 @@ pub(in crate::report) fn opinion_blocks(asked: Asked<'_>) -> Vec<Block> {
         blocks.push(Block::heading(2, words.how_sure));
         blocks.extend(held(&spoken, asked.wording));
         blocks.push(Block::heading(2, words.hinges));
-        blocks.push(hinges(&spoken));
+        blocks.push(Block::List { items: sentences(&spoken, |of| &of.hinges) });
     }
     // Of questions without any answer the program has nothing to warn of.
     if asked.variants.iter().any(|variant| parts_of(variant).next().is_some()) {
@@ -75,7 +75,9 @@ pub(in crate::report) fn opinion_blocks(asked: Asked<'_>) -> Vec<Block> {
         let limit = |method: &Method| {
             format!("{}: {}", method.name(asked.wording), method.limits(asked.wording))
         };
-        blocks.push(Block::List { items: methods.iter().map(limit).collect() });
+        let of_answers = sentences(&spoken, |of| &of.left_out);
+        let items = methods.iter().map(limit).chain(of_answers).collect();
+        blocks.push(Block::List { items });
     }
     blocks.push(Block::heading(2, words.who));
     blocks.extend(who(asked));
@@ -271,11 +273,14 @@ fn said_of(names: &[&str], n_all: usize, sentence: &str, words: &OpinionWords) -
     Some(Block::paragraph(text))
 }
 
-/// What the answers hinge on, each sentence once.
-fn hinges(spoken: &[Spoken<'_>]) -> Block {
+/// Sentences of the answers, each once, with the variants that have it unless all do.
+fn sentences<'a>(
+    spoken: &[Spoken<'a>],
+    of_opinion: impl Fn(&'a PartOpinion) -> &'a Vec<String>,
+) -> Vec<String> {
     let mut items: Vec<(String, Vec<&str>)> = Vec::new();
     for variant in spoken {
-        for sentence in variant.opinions().flat_map(|of| &of.hinges) {
+        for sentence in variant.opinions().flat_map(&of_opinion) {
             match items.iter_mut().find(|(known, _)| known == sentence) {
                 Some((_, of)) => of.push(&variant.name),
                 None => items.push((sentence.clone(), vec![&*variant.name])),
@@ -286,7 +291,7 @@ fn hinges(spoken: &[Spoken<'_>]) -> Block {
         true => sentence,
         false => format!("{}: {sentence}", of.join(", ")),
     };
-    Block::List { items: items.into_iter().map(item).collect() }
+    items.into_iter().map(item).collect()
 }
 
 /// The warnings of all answers by name, each with the variants that have it.

@@ -20,6 +20,7 @@ fn each_of_two_forecasts_of_a_variant_has_its_name_and_its_figures() {
             held: None,
             is_doubtful: false,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         }),
         ..Part::default()
     };
@@ -61,6 +62,7 @@ fn a_figure_that_is_the_same_in_all_variants_is_told_once() {
             held: None,
             is_doubtful: false,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         };
         let part = Part { opinion: Some(opinion), ..Part::default() };
         VariantParts { name: name.to_owned(), notes: String::new(), answers: vec![Ok(part)] }
@@ -103,6 +105,7 @@ fn told_of_variants<const N: usize>(
             held,
             is_doubtful,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         };
         let methods = methods.iter().copied().collect();
         let part = Part { opinion: Some(opinion), methods, ..Part::default() };
@@ -153,6 +156,7 @@ fn no_intervals_are_told_of(rank: Rank) {
         held: None,
         is_doubtful: false,
         hinges: Vec::new(),
+        left_out: Vec::new(),
     };
     let part = Part { opinion: Some(opinion), ..Part::default() };
     let (name, notes) = ("a".to_owned(), String::new());
@@ -178,6 +182,7 @@ fn figures_of_a_reconstruction_say_what_stands_in_brackets() {
             held: None,
             is_doubtful,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         };
         let part = Part { opinion: Some(opinion), ..Part::default() };
         let (name, notes) = ("a".to_owned(), String::new());
@@ -203,6 +208,7 @@ fn what_was_counted_inside_of_the_domain_is_said_to_be_so() {
             held: Some(Block::paragraph("48 of 48")),
             is_doubtful: false,
             hinges: Vec::new(),
+            left_out: Vec::new(),
         };
         let part = Part { opinion: Some(opinion), caveats, ..Part::default() };
         let (name, notes) = ("a".to_owned(), String::new());

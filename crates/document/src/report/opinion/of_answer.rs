@@ -86,6 +86,7 @@ pub(in crate::report) fn opinion_of_forecast(
             None if report.n_vehicles > 0 => words.too_few_drawn.to_owned(),
             None => words.nothing_drawn.to_owned(),
         }],
+        left_out: Vec::new(),
     }
 }
 
@@ -128,7 +129,22 @@ pub(in crate::report) fn opinion_of_reconstruction(
         held: report.held_table().map(|table| facts_table(&table, context)),
         is_doubtful: false,
         hinges: hinges.unwrap_or_else(|| vec![words.too_few_to_say.to_owned()]),
+        left_out: later_contacts_left_out(report, &speeds, context).into_iter().collect(),
     }
+}
+
+/// That the cars meet again, where that was not followed; `None` where it was, or where they part for good.
+///
+/// - `speeds`: the table that has the share of the motions.
+fn later_contacts_left_out(
+    report: &ReconstructReport,
+    speeds: &FactTable,
+    context: Context<'_>,
+) -> Option<String> {
+    let words = opinion_words(context.wording.language);
+    report.later_contacts.filter(|later| later.is_told() && !later.are_followed)?;
+    let share = value_of(speeds, Term::MeetAgainByImpact, context)?;
+    Some(fill(words.later_contacts_left_out, &[("share", &share)]))
 }
 
 /// Several courses of events by name: how probable each is, and the speed that is asked for in it, since that
@@ -170,6 +186,7 @@ pub(in crate::report) fn opinion_of_simulation(
         held: None,
         is_doubtful: false,
         hinges: hinges.unwrap_or_else(|| vec![words.nothing_drawn.to_owned()]),
+        left_out: Vec::new(),
     }
 }
 
@@ -190,6 +207,7 @@ pub(in crate::report) fn opinion_of_force(
         held: report.held_table().map(|table| facts_table(&table, context)),
         is_doubtful: false,
         hinges: vec![words.force_hinges.to_owned()],
+        left_out: Vec::new(),
     }
 }
 
@@ -229,6 +247,7 @@ pub(in crate::report) fn opinion_of_impact(
         held: None,
         is_doubtful: false,
         hinges: vec![words.impact_hinges.to_owned()],
+        left_out: Vec::new(),
     }
 }
 
@@ -251,6 +270,7 @@ pub(in crate::report) fn opinion_of_hand(
         held: None,
         is_doubtful: false,
         hinges: vec![words.hand_hinges.to_owned()],
+        left_out: Vec::new(),
     }
 }
 
@@ -278,6 +298,7 @@ pub(in crate::report) fn opinion_of_replay(
         held: None,
         is_doubtful: false,
         hinges: vec![words.replay_hinges.to_owned()],
+        left_out: Vec::new(),
     }
 }
 

@@ -41,4 +41,6 @@ pub(in crate::report) struct PartOpinion {
     pub is_doubtful: bool,
     /// What the answer hinges on, in sentences.
     pub hinges: Vec<String>,
+    /// What this answer left out beside all that its methods do, in sentences.
+    pub left_out: Vec<String>,
 }

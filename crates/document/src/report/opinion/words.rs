@@ -36,6 +36,7 @@ pub(super) struct OpinionWords {
     pub no_warnings: &'static str,
     pub warnings_told: &'static str,
     pub not_considered: &'static str,
+    pub later_contacts_left_out: &'static str,
     pub who: &'static str,
     pub expert: &'static str,
     pub qualifications: &'static str,
@@ -122,6 +123,8 @@ const EN: OpinionWords = OpinionWords {
     no_warnings: "The program gives no warning.",
     warnings_told: "What this means and what can be done is in section 6.",
     not_considered: "What was not considered",
+    later_contacts_left_out: "Later contacts of this case: after the first one the cars meet again in {share} of the \
+        motions, as the impact alone moves them, and this was not followed.",
     who: "Expert, instruction and materials",
     expert: "Expert: {text}",
     qualifications: "Qualifications: {text}",
@@ -212,6 +215,8 @@ const DE: OpinionWords = OpinionWords {
     no_warnings: "Das Programm gibt keine Warnung aus.",
     warnings_told: "Bedeutung und Abhilfe: siehe Abschnitt 6.",
     not_considered: "Was nicht berücksichtigt wurde",
+    later_contacts_left_out: "Weitere Kontakte in diesem Fall: Nach dem ersten treffen sich die Fahrzeuge in {share} der \
+        Bewegungen wieder, soweit allein der Stoß sie bewegt; das ist nicht verfolgt.",
     who: "Sachverständiger, Auftrag und Anknüpfungstatsachen",
     expert: "Sachverständiger: {text}",
     qualifications: "Qualifikation: {text}",
