@@ -128,12 +128,9 @@ impl RestrictionLine {
         };
         let mut galley = line(&self.text);
         let mut kept = self.text.as_str();
-        // A list is cut between its parts, and a text between its sentences.
+        // A list is cut between its parts, a text between its sentences, and a long sentence between its words.
         while galley.elided {
-            let Some(before) = without_last_part(kept) else {
-                galley = line(&self.text);
-                break;
-            };
+            let Some(before) = shorter(kept) else { break };
             kept = before;
             galley = line(&format!("{kept} …"));
         }
@@ -161,6 +158,12 @@ fn without_last_part(text: &str) -> Option<&str> {
     text.get(..=end)
 }
 
+/// A text without its last part or sentence, or without its last word if it has one alone; `None` if that is
+/// one word.
+fn shorter(text: &str) -> Option<&str> {
+    without_last_part(text).or_else(|| text.rsplit_once(' ').map(|(before, _)| before))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,6 +177,14 @@ mod tests {
         assert_eq!(shorter, Some("a study; no speed of 4.5 m/s is safe."));
         assert_eq!(shorter.and_then(without_last_part), Some("a study;"));
         assert_eq!(without_last_part("a study;"), None);
+    }
+
+    /// A sentence that was longer than the line ended as “the masses of 2000 and 16…”.
+    #[test]
+    fn a_long_sentence_is_cut_between_words() {
+        assert_eq!(shorter("a study; no speed is safe"), Some("a study;"));
+        assert_eq!(shorter("masses of 2000 and 1600"), Some("masses of 2000 and"));
+        assert_eq!(shorter("masses"), None);
     }
 
     /// “Fahrer offen: striking vehicle: Zum Verhalten …” stood below the figures of a German report.
