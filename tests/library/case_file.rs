@@ -205,7 +205,11 @@ fn what_is_no_case_is_refused_with_its_place() {
     let case = CaseFile::new("a", Variant { name: "b".to_owned(), ..Variant::default() });
     let text = case.to_text(path).expect("text");
     says(&text.replace("\"shown\": \"b\"", "\"shown\": \"c\""), "no variant \"c\"");
-    assert!(matches!(error(&text.replace("\"notes\"", "\"note\"")), CaseError::Syntax { .. }));
+    let unknown = error(&text.replace("\"notes\"", "\"note\""));
+    assert!(matches!(unknown, CaseError::Syntax { .. }));
+    // “a.impactlab:6:8: is no case: unknown field `note` at line 6 column 8”
+    let told = impactlab_core::error_chain(&unknown);
+    assert!(told.contains("unknown field `note`") && !told.contains("at line"), "{told}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Why a case cannot be read, written or packed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use impactlab_core::data::DataError;
 
@@ -11,12 +11,16 @@ pub enum CaseError {
     #[error(transparent)]
     Data(#[from] DataError),
     /// The file is not JSON, or a key or a value is not what is expected there.
-    #[error("{}:{}:{}: is no case", path.display(), source.line(), source.column())]
+    #[error("{}:{line}:{column}: is no case: {message}", path.display())]
     Syntax {
         /// The case file.
         path: PathBuf,
-        /// What is wrong.
-        source: serde_json::Error,
+        /// Its line, from 1.
+        line: usize,
+        /// The column in that line, from 1.
+        column: usize,
+        /// What is wrong there.
+        message: String,
     },
     /// A question names a file whose name is not Unicode, so that it can be neither written to a case
     /// nor listed in a report.
@@ -97,4 +101,15 @@ pub enum CaseError {
         /// Why.
         source: std::io::Error,
     },
+}
+
+impl CaseError {
+    /// That a file is not the JSON of a case. What the parser says of the place stands before its text.
+    pub(super) fn syntax(path: &Path, source: &serde_json::Error) -> Self {
+        let (line, column) = (source.line(), source.column());
+        let text = source.to_string();
+        let place = format!(" at line {line} column {column}");
+        let message = text.strip_suffix(&place).unwrap_or(&text).to_owned();
+        Self::Syntax { path: path.to_owned(), line, column, message }
+    }
 }

@@ -95,7 +95,7 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
         let place = found.map(|(_, place)| place.clone());
         place.or_else(|| said.get(Path::new(text)).map(|path| beside_case(path)))
     };
-    let wrong = |source| CaseError::Syntax { path: to.to_owned(), source };
+    let wrong = |source: serde_json::Error| CaseError::syntax(to, &source);
     let packed = case.with_paths(&placed).map_err(wrong)?;
     let text = sealed(&serde_json::to_string_pretty(&packed).map_err(wrong)?);
     let name = file_stem(&case.name);

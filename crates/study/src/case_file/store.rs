@@ -42,7 +42,7 @@ impl CaseFile {
     /// # Errors
     /// As for [`CaseFile::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, CaseError> {
-        let wrong = |source| CaseError::Syntax { path: path.to_owned(), source };
+        let wrong = |source: serde_json::Error| CaseError::syntax(path, &source);
         let header: Header = serde_json::from_str(text).map_err(wrong)?;
         if header.format != FORMAT {
             return Err(CaseError::Format { path: path.to_owned(), got: header.format });
@@ -68,7 +68,7 @@ impl CaseFile {
     /// [`CaseError::Syntax`] if a number is not finite.
     pub fn to_text(&self, path: &Path) -> Result<String, CaseError> {
         self.check_writable()?;
-        let wrong = |source| CaseError::Syntax { path: path.to_owned(), source };
+        let wrong = |source: serde_json::Error| CaseError::syntax(path, &source);
         let (folder, used) = (folder_of(path), self.used_paths());
         let to_relative = |text: &str| {
             let path = Path::new(text);
