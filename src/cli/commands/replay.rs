@@ -58,10 +58,10 @@ pub(in crate::cli) struct RecordArgs {
     #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO),
         allow_hyphen_values = true)]
     steering_ratio: Option<f64>,
-    /// Its standard deviation; 3 % if not given
+    /// Its standard deviation; if not given, 3 % of a ratio that is
     #[arg(long, value_name = "SIGMA", value_parser = number(STEERING_RATIO_SIGMA))]
     steering_ratio_sigma: Option<f64>,
-    /// Standard deviation of the recorded speed as a share of it; 4% if not given
+    /// Standard deviation of the recorded speed as a share of it; 4 % if not given
     #[arg(long, value_name = "SHARE", value_parser = number(RECORDED_SPEED_SIGMA))]
     speed_sigma: Option<f64>,
     /// To which side the recorded steering wheel is positive
@@ -76,7 +76,8 @@ pub(in crate::cli) struct RecordArgs {
     /// Standard deviation of the friction; that of the data sheet or 7.5 % of it if not given
     #[arg(long, value_name = "SIGMA", value_parser = number(ROAD_FRICTION_SIGMA))]
     friction_sigma: Option<f64>,
-    /// From when on samples are followed, s before the crash as the recorder counts: -5
+    /// From when on samples are followed, s before the crash as the recorder counts: -5; all of the last
+    /// 30 s if not given
     #[arg(long, value_name = "TIME", value_parser = number(REPLAY_START), allow_hyphen_values = true)]
     from: Option<f64>,
     /// X of the CG at the first contact, m
