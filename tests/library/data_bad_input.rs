@@ -68,7 +68,7 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time_s,fx_n,fy_n\nx,y,z\n0.1,1,1\n",
-            r#"f.csv:2:1: "time_s" is "x", expected a finite number in s"#,
+            r#"f.csv:2:1: "time_s" is "x", expected a finite number in s; if this is a second line of the header, remove it"#,
         ),
         (
             b"# one\n\ntime_s,fx_n,fy_n\n\n0.2,1,1\n# two\n\n0.1,1,1\n",
