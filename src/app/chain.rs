@@ -128,7 +128,13 @@ impl State {
             }
             None => (None, NO_CASE.to_owned(), Pane::Data),
         };
-        Link { title: "Scenario", figure, source, warnings: Vec::new(), is_late: false, pane }
+        // As in the contents of the case: a log is no scenario, and nothing may have been struck in it.
+        let title = match &self.project.subject() {
+            Some(Subject::File(_)) => "File",
+            Some(Subject::Manoeuvre) => "Manoeuvre",
+            Some(Subject::Scenario | Subject::Case { .. }) | None => "Scenario",
+        };
+        Link { title, figure, source, warnings: Vec::new(), is_late: false, pane }
     }
 }
 

@@ -231,7 +231,8 @@ impl State {
 
 /// The figures of the chain that were found, each with its warnings.
 fn result_entries(chain: &[Link]) -> impl Iterator<Item = ContentsEntry> {
-    chain.iter().filter(|link| link.title != "Scenario").map(|link| {
+    // The first link is what they are figures of.
+    chain.iter().skip(1).map(|link| {
         let (label, detail) = match (&link.figure, link.is_late) {
             (_, true) => (link.title, "computing…".to_owned()),
             (Some(figure), false) => (link.title, figure.clone()),

@@ -54,6 +54,8 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     apply(&mut harness, Command::Select(Subject::File("nowhere.csv".into())));
     let chain = state(&harness).chain();
     assert!(chain[1..].iter().all(|link| link.figure.is_none()), "{chain:?}");
+    // “Scenario: mylog.csv” stood there.
+    assert_eq!((chain[0].title, chain[0].figure.as_deref()), ("File", Some("nowhere.csv")));
     // A click leads to the panel.
     let motion = harness.query_all_by_label_contains("Motion:").next().expect("the link");
     motion.click();
