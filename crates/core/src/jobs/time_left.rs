@@ -77,11 +77,13 @@ impl TimeLeft {
         (self.left_s, self.latest) = (Some(left_s), Some(now));
     }
 
-    /// The time left; `None` before anything was done, or while the amount of work is unknown.
+    /// The time left; `None` before anything was done, while the amount of work is unknown, and once all that
+    /// was counted is done: how long work takes that goes on after that is not known.
     ///
     /// - `at`: time since the start.
     pub fn at(&self, at: Duration) -> Option<Duration> {
-        let passed_s = at.as_secs_f64() - self.latest?.at_s;
+        let latest = self.latest.filter(|latest| latest.done < latest.total)?;
+        let passed_s = at.as_secs_f64() - latest.at_s;
         Duration::try_from_secs_f64((self.left_s? - passed_s).max(LEAST_S)).ok()
     }
 }
@@ -90,7 +92,7 @@ impl TimeLeft {
 mod tests {
     use super::*;
 
-    /// Times left, s, at each report of work whose units take times in s.
+    /// Times left, s, at each report but the last of work whose units take times in s.
     fn shown(seconds: &[f64]) -> Vec<(f64, f64)> {
         let (mut left, mut at_s) = (TimeLeft::default(), 0.0);
         let report = |(i, unit_s): (usize, &f64)| {
@@ -99,7 +101,7 @@ mod tests {
             left.take(at, &Progress::new(i as u64 + 1, seconds.len() as u64, ""));
             (at_s, left.at(at).expect("something was done").as_secs_f64())
         };
-        seconds.iter().enumerate().map(report).collect()
+        seconds.iter().enumerate().take(seconds.len() - 1).map(report).collect()
     }
 
     #[test]
@@ -137,6 +139,9 @@ mod tests {
         assert_eq!(left.at(seconds(60)), None);
         left.take(seconds(62), &Progress::new(1, 3, "b"));
         assert_eq!(left.at(seconds(62)), Some(seconds(4)));
+        // “100 %, 1 s left” stood there for a minute, in which the data that were counted were checked.
+        left.take(seconds(63), &Progress::new(3, 3, "b"));
+        assert_eq!(left.at(seconds(63)), None);
         left.take(seconds(64), &Progress::new(2, 0, "unknown"));
         assert_eq!(left.at(seconds(64)), None);
     }
