@@ -15,6 +15,7 @@ use impactlab_document::report::{
     Block, Language, Paper, ReportDate, ReportDocument, ReportSettings, SectionKind, pdf,
     report_case,
 };
+use impactlab_reconstruct::evidence::{Edr, Evidence, Measured};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
 use impactlab_study::{
@@ -274,6 +275,27 @@ fn a_reconstruction_that_leaves_later_contacts_out_says_so_in_the_opinion() {
     let case = reconstruction_of("docs/guide/examples/position_alone.toml", folder.path());
     assert_says(&report(&case, &english()).0, "Later contacts of this case");
     assert!(!texts(&staged().2).iter().any(|of| of.contains("Later contacts of this case")));
+}
+
+/// Of a recorder alone, courses of events and their probabilities stood in the opinion as if found.
+#[test]
+fn courses_that_no_evidence_decides_between_are_said_to_be_those_of_the_assumptions() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/examples/position_alone.toml");
+    let mut evidence = Evidence::load(&path).expect("evidence");
+    let said = "follow from the assumptions alone";
+    let told = |evidence: &Evidence| {
+        let path = folder.path().join("recorder.toml");
+        fs::write(&path, evidence.to_toml()).expect("written");
+        let case = reconstruction_of(path.to_str().expect("text"), folder.path());
+        texts(&report(&case, &english()).0).iter().any(|text| text.contains(said))
+    };
+    assert!(!told(&evidence), "a position is evidence");
+    evidence.rest = None;
+    let speed_before_m_s = Some(Measured { value: 15.0, sigma: 0.5 }.into());
+    evidence.edr = Some(Edr { speed_before_m_s, ..Edr::default() });
+    assert!(told(&evidence));
 }
 
 #[test]

@@ -318,6 +318,14 @@ impl Evidence {
         self.edr.unwrap_or_default()
     }
 
+    /// Whether anything says which way a car went: where it came to rest, its marks, or where and how fast it
+    /// was seen on the way. A recorder knows the velocity before and its change alone.
+    pub fn tells_way(&self) -> bool {
+        let is_at_rest = self.rest.is_some() || self.striking_rest.is_some();
+        let has_marks = !self.marks.is_empty() || !self.striking_marks.is_empty();
+        is_at_rest || has_marks || !self.positions.is_empty() || !self.speeds.is_empty()
+    }
+
     /// Whether anything of the striking car is evidence of how it moved, so that it is followed.
     pub fn follows_striking_car(&self) -> bool {
         let is_found = self.striking_rest.is_some()

@@ -108,6 +108,9 @@ pub(in crate::report) fn opinion_of_reconstruction(
     let mut sentences = Vec::new();
     if report.modes.len() > 1 {
         sentences.push(words.several_courses.to_owned());
+        if !report.tells_way {
+            sentences.push(words.courses_of_prior.to_owned());
+        }
     }
     // Both speeds, or that of the single car; the table below has the other figures.
     let n_told = if report.kind.is_collision() { 2 } else { 1 };

@@ -58,6 +58,7 @@ pub(super) struct OpinionWords {
     pub nothing_drawn: &'static str,
     pub too_few_drawn: &'static str,
     pub several_courses: &'static str,
+    pub courses_of_prior: &'static str,
     pub no_intervals: &'static str,
     pub too_few_to_say: &'static str,
     pub at_medians: &'static str,
@@ -153,6 +154,8 @@ const EN: OpinionWords = OpinionWords {
     too_few_drawn: "Too few vehicles and roads were drawn to see what the answer depends on.",
     several_courses: "More than one course of events is possible, each with a speed of its own below; the figures over all \
         of them may be true of none.",
+    courses_of_prior: "No evidence says which way the motion went to its end: these courses and their probabilities \
+        follow from the assumptions alone.",
     no_intervals: "The particles allow no intervals.",
     too_few_to_say: "The particles do not allow to say what the speeds hinge on.",
     at_medians: "With each input at its median:",
@@ -246,6 +249,8 @@ const DE: OpinionWords = OpinionWords {
     too_few_drawn: "Es wurden zu wenige Fahrzeuge und Fahrbahnen gezogen, um zu erkennen, wovon die Antwort abhängt.",
     several_courses: "Mehr als ein Geschehensablauf ist möglich, jeder mit einer eigenen Geschwindigkeit, siehe unten; \
         die Zahlen über alle treffen womöglich auf keinen zu.",
+    courses_of_prior: "Zum weiteren Verlauf der Bewegung fehlen Anknüpfungstatsachen: Diese Geschehensabläufe und ihre \
+        Wahrscheinlichkeiten folgen allein aus den Annahmen.",
     no_intervals: "Für Bereiche reichen die Ziehungen nicht aus.",
     too_few_to_say: "Die Ziehungen lassen keine Aussage darüber zu, wovon die Geschwindigkeiten abhängen.",
     at_medians: "Mit jeder Eingangsgröße in ihrem Median:",

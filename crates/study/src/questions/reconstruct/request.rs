@@ -148,6 +148,10 @@ pub struct ReconstructReport {
     pub later_contacts: Option<LaterContactsReport>,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
+    /// Whether the evidence says which way a car went. Otherwise courses of events and their probabilities are
+    /// those of the prior.
+    #[serde(skip)]
+    pub tells_way: bool,
 }
 
 /// A reconstruction.
@@ -428,8 +432,7 @@ impl Question for ReconstructRequest {
         });
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
-        let ground = target.model().zones();
-        let cars = target.model().cars();
+        let (ground, cars) = (target.model().zones(), target.model().cars());
         let mut by_hand = HandCheck::all(target.evidence(), cars, ground);
         // They know no slope.
         by_hand.retain(|_| cars.struck.parameters.slope.is_level());
@@ -475,6 +478,7 @@ impl Question for ReconstructRequest {
             friction_zones,
             later_contacts,
             priors: target.model().prior().components().to_vec(),
+            tells_way: evidence.tells_way(),
         };
         let report = Answer { report, caveats, provenance: Provenance::from_seed(self.seed) };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
