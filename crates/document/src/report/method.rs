@@ -6,7 +6,8 @@ use crate::report::language::phrase_of;
 use crate::report::numbers::{Wording, fill};
 use crate::report::{Block, Language, Table};
 use impactlab_core::bibliography as sources;
-use impactlab_core::units::Quantity;
+use impactlab_core::collision::contact::USUAL_ELEMENT_M;
+use impactlab_core::units::{Quantity, UnitSystem};
 
 /// By what an answer is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -58,9 +59,9 @@ impl Method {
     }
 
     /// How it works, in a paragraph.
-    fn text(self, wording: &Wording) -> &'static str {
+    fn text(self, wording: &Wording) -> String {
         let words = wording.words;
-        match self {
+        let text = match self {
             Self::Impact => words.method_impact_text,
             Self::FourDof => words.method_four_dof_text,
             Self::FourDofAlone => words.method_four_dof_alone_text,
@@ -70,7 +71,13 @@ impl Method {
             Self::Reconstruction => words.method_reconstruction_text,
             Self::SingleCar => words.method_single_car_text,
             Self::DataSheet => words.method_sheet_text,
-        }
+        };
+        let length = Quantity::Length.display_unit(wording.units).from_si(USUAL_ELEMENT_M);
+        let element = match wording.units {
+            UnitSystem::Si => wording.with_unit(&format!("{:.0}", 100.0 * length), "cm"),
+            UnitSystem::Us => wording.with_unit(&format!("{:.1}", 12.0 * length), "in"),
+        };
+        fill(text, &[("element", &element)])
     }
 
     /// What is neglected and how far it holds.
@@ -243,7 +250,6 @@ fn behind_title(text: &str) -> [&str; 3] {
 mod tests {
     use super::*;
     use crate::report::{Paper, ReportDate, ReportSettings};
-    use impactlab_core::units::UnitSystem;
 
     const ALL: [Method; 9] = [
         Method::Impact,
@@ -256,6 +262,14 @@ mod tests {
         Method::SingleCar,
         Method::DataSheet,
     ];
+
+    /// “Elements of 8 cm” stood in a report in US units.
+    #[test]
+    fn elements_of_outlines_are_in_the_units_of_the_report() {
+        let told = |units| Method::ContactLaw.text(&Wording::english(units));
+        assert!(told(UnitSystem::Si).contains("elements of 8 cm;"), "{}", told(UnitSystem::Si));
+        assert!(told(UnitSystem::Us).contains("elements of 3.1 in;"), "{}", told(UnitSystem::Us));
+    }
 
     /// “Close at 0.5 to 12 m/s” stood in a report whose speeds are in mph.
     #[test]

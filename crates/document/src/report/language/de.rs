@@ -311,7 +311,7 @@ pub(super) const WORDS: Words = Words {
         nicht simuliert.",
     method_contact: "Kontakt zweier Umrisse",
     method_contact_text: "Beide Fahrzeuge werden gemeinsam verfolgt. Ihre Umrisse, Rechtecke mit gerundeten Ecken, sind in \
-        Elemente von 8 cm geteilt; wo sie sich überdecken, werden die Elemente beider in Reihe zusammengedrückt. Die Last \
+        Elemente von {element} geteilt; wo sie sich überdecken, werden die Elemente beider in Reihe zusammengedrückt. Die Last \
         eines Elements wächst linear über einen elastischen Ast bis A und dann um B mal die Eindringung, entlastet auf einer \
         steileren Geraden und lässt eine Delle zurück; längs der Fläche wirkt Reibung. A und B folgen nach Regel aus Klasse \
         und Masse, mit einer Streuung von 25 bis 40 %. Wo die Kraft des ersten Kontakts bekannt oder vorhergesagt ist, werden \

@@ -303,7 +303,7 @@ pub(super) const WORDS: Words = Words {
         not simulated.",
     method_contact: "Contact of two outlines",
     method_contact_text: "Both vehicles are followed together. Their outlines, rectangles with rounded corners, are cut \
-        into elements of 8 cm; where they overlap, the elements of both are pressed together in series. The load of an \
+        into elements of {element}; where they overlap, the elements of both are pressed together in series. The load of an \
         element grows linearly over an elastic branch to A and then by B times the crush, unloads along a steeper line, and \
         leaves a dent; friction acts along the face that is entered. A and B follow from class and mass by rule, with a \
         scatter of 25 to 40 %. Where the force of the first contact is known or predicted, the loads are scaled so that the \
