@@ -165,9 +165,17 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
             Report::Simulate(report) => {
                 kinds[1] += 1;
                 let end = report.end.expect("an end");
-                assert_says(document, &shown(Quantity::Speed, end.speed_m_s));
-                assert_says(document, &shown(Quantity::Length, report.distance_m.expect("a path")));
-                assert_says(document, &shown(Quantity::Angle, end.yaw_rad));
+                let distance_m = report.distance_m.expect("a path");
+                for (quantity, si) in [
+                    (Quantity::Speed, end.speed_m_s),
+                    (Quantity::Length, distance_m),
+                    (Quantity::Angle, end.yaw_rad),
+                ] {
+                    assert_says(
+                        document,
+                        &NumberFormat::english(UnitSystem::Si).rough(quantity, si),
+                    );
+                }
             }
             Report::PredictForce(report) => {
                 kinds[2] += 1;
