@@ -241,7 +241,7 @@ fn a_record_that_cannot_be_followed_is_refused_with_what_is_missing() {
             "backwards",
         ),
         (
-            "Time [s],Speed [km/h],Steering Wheel Angle [deg]\n0,50,0\n-1,50,0\n-2,50,0\n",
+            "Time [s],Speed [km/h],Steering Wheel Angle [deg]\n-1,50,0\n-2,50,0\n0,50,0\n",
             "do not increase",
         ),
     ] {
