@@ -112,6 +112,11 @@ fn texts(document: &ReportDocument) -> Vec<String> {
     document.sections.iter().flat_map(|section| &section.blocks).flat_map(of_block).collect()
 }
 
+/// That a number which has no interval is told, in two digits.
+fn assert_says_roughly(document: &ReportDocument, quantity: Quantity, si: f64) {
+    assert_says(document, &NumberFormat::english(UnitSystem::Si).rough(quantity, si));
+}
+
 fn assert_says(document: &ReportDocument, text: &str) {
     assert!(texts(document).iter().any(|of| of.contains(text)), "{text:?} is not in the report");
 }
@@ -165,17 +170,10 @@ fn the_example_has_every_section_and_the_numbers_of_its_answers() {
             Report::Simulate(report) => {
                 kinds[1] += 1;
                 let end = report.end.expect("an end");
+                assert_says_roughly(document, Quantity::Speed, end.speed_m_s);
                 let distance_m = report.distance_m.expect("a path");
-                for (quantity, si) in [
-                    (Quantity::Speed, end.speed_m_s),
-                    (Quantity::Length, distance_m),
-                    (Quantity::Angle, end.yaw_rad),
-                ] {
-                    assert_says(
-                        document,
-                        &NumberFormat::english(UnitSystem::Si).rough(quantity, si),
-                    );
-                }
+                assert_says_roughly(document, Quantity::Length, distance_m);
+                assert_says_roughly(document, Quantity::Angle, end.yaw_rad);
             }
             Report::PredictForce(report) => {
                 kinds[2] += 1;
