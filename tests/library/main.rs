@@ -38,6 +38,7 @@ mod report_german;
 mod report_opinion;
 mod report_pdf;
 mod report_pictures;
+mod report_reconstruction;
 mod report_stills;
 mod report_tables;
 mod response_model;
