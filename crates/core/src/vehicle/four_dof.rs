@@ -104,6 +104,11 @@ impl VehicleInput<f64> {
     /// [`VehicleInput::released`] as a constant.
     pub const RELEASED: Self =
         Self { steer_rad: 0.0, wheels: None, friction_share: None, collision: None };
+
+    /// Whether something brakes or locks a wheel.
+    pub fn is_braked(&self) -> bool {
+        self.wheels.iter().flatten().any(|wheel| wheel.braking_n > 0.0 || wheel.locked > 0.0)
+    }
 }
 
 impl<T: Lanes> VehicleInput<T> {

@@ -343,6 +343,7 @@ impl StrengthPopulation {
             step_noise: self.step_noise,
             tail_ratio: strengths.widths.tail_ratio,
             growth: strengths.widths.growth,
+            braked: strengths.widths.braked,
         }
     }
 

@@ -23,6 +23,8 @@ struct Stored {
     tail_ratio: f64,
     #[serde(default)]
     growth: f64,
+    #[serde(default = "not_wider")]
+    braked: f64,
     step_noise: f64,
     cars: Vec<StoredCar>,
 }
@@ -38,6 +40,8 @@ struct StoredCar {
     tail_ratio: f64,
     #[serde(default)]
     growth: f64,
+    #[serde(default = "not_wider")]
+    braked: f64,
 }
 
 impl StrengthPopulation {
@@ -63,8 +67,8 @@ impl StrengthPopulation {
             add(format!("car{i}.covariance"), &car.strengths.covariance)?;
             add(format!("car{i}.mean"), &row(&car.strengths.mean))?;
             let (vehicle, n_trajectories) = (car.vehicle.clone(), car.n_trajectories);
-            let CarStrengths { remainder, widths: Widths { widening, tail_ratio, growth }, .. } =
-                car.strengths;
+            let CarStrengths { remainder, widths, .. } = car.strengths;
+            let Widths { widening, tail_ratio, growth, braked } = widths;
             cars.push(StoredCar {
                 vehicle,
                 n_trajectories,
@@ -72,13 +76,14 @@ impl StrengthPopulation {
                 widening,
                 tail_ratio,
                 growth,
+                braked,
             });
         }
         let Self { noise, remainder, step_noise, widths, .. } = *self;
-        let Widths { widening, tail_ratio, growth } = widths;
+        let Widths { widening, tail_ratio, growth, braked } = widths;
         file.put(
             NAME,
-            &Stored { noise, remainder, widening, tail_ratio, growth, step_noise, cars },
+            &Stored { noise, remainder, widening, tail_ratio, growth, braked, step_noise, cars },
         )?;
         file.put_group(NAME, tensors);
         Ok(())
@@ -93,7 +98,8 @@ impl StrengthPopulation {
         let Some(stored): Option<Stored> = file.find(NAME)? else { return Ok(None) };
         check_numbers("population.noise", &stored.noise, Expected::NotNegative)?;
         check_number("population.remainder", stored.remainder, Expected::NotNegative)?;
-        let widths = checked("population", [stored.widening, stored.tail_ratio, stored.growth])?;
+        let Stored { widening, tail_ratio, growth, braked, .. } = stored;
+        let widths = checked("population", Widths { widening, tail_ratio, growth, braked })?;
         check_number("population.step_noise", stored.step_noise, Expected::NotNegative)?;
         let tensors = file.take_group(NAME);
         let matrix = |name: &str, n_rows: usize| matrix(&tensors, name, n_rows);
@@ -112,14 +118,14 @@ impl StrengthPopulation {
         };
         let mut cars = Vec::new();
         for (i, car) in stored.cars.into_iter().enumerate() {
-            let StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio, growth } =
-                car;
+            let StoredCar { vehicle, n_trajectories, remainder, .. } = car;
+            let StoredCar { widening, tail_ratio, growth, braked, .. } = car;
             check_number("population.car.remainder", remainder, Expected::NotNegative)?;
             let strengths = CarStrengths {
                 mean: row(&format!("car{i}.mean"))?,
                 covariance: covariance(&format!("car{i}.covariance"))?,
                 remainder,
-                widths: checked("population.car", [widening, tail_ratio, growth])?,
+                widths: checked("population.car", Widths { widening, tail_ratio, growth, braked })?,
             };
             cars.push(KnownCar { vehicle, n_trajectories, strengths });
         }
@@ -143,11 +149,17 @@ fn normal() -> f64 {
     Widths::NORMAL.tail_ratio
 }
 
-fn checked(name: &str, [widening, tail_ratio, growth]: [f64; 3]) -> Result<Widths, NnError> {
-    check_number(&format!("{name}.widening"), widening, Expected::NotNegative)?;
-    check_number(&format!("{name}.tail_ratio"), tail_ratio, Expected::Positive)?;
-    check_number(&format!("{name}.growth"), growth, Expected::NotNegative)?;
-    Ok(Widths { widening, tail_ratio, growth })
+/// The factor for braked wheels in a file from before there was one.
+fn not_wider() -> f64 {
+    Widths::NORMAL.braked
+}
+
+fn checked(name: &str, widths: Widths) -> Result<Widths, NnError> {
+    check_number(&format!("{name}.widening"), widths.widening, Expected::NotNegative)?;
+    check_number(&format!("{name}.tail_ratio"), widths.tail_ratio, Expected::Positive)?;
+    check_number(&format!("{name}.growth"), widths.growth, Expected::NotNegative)?;
+    check_number(&format!("{name}.braked"), widths.braked, Expected::Positive)?;
+    Ok(widths)
 }
 
 fn tensor(matrix: &DMatrix<f64>) -> Result<Tensor, NnError> {

@@ -126,7 +126,7 @@ impl<'a> Dynamics<'a> {
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
         let now = self.model.constants.evaluate(x, u);
-        let correction = self.correction_at(component, latents, (x, &now), time_s, batch);
+        let correction = self.correction_at(component, latents, (x, u, &now), time_s, batch);
         let kind = self.network.correction();
         let step = |value| kind.step_from(&self.model, x, u, &now.derivative, value);
         let corrected = step(correction);
@@ -148,7 +148,7 @@ impl<'a> Dynamics<'a> {
         batch: &mut NetworkBatch,
     ) -> [f64; N_RESIDUAL] {
         let now = self.model.constants.evaluate(x, u);
-        self.correction_at(component, latents, (x, &now), time_s, batch)
+        self.correction_at(component, latents, (x, u, &now), time_s, batch)
     }
 
     /// [`Dynamics::correction`] where the 4DOF model was evaluated already.
@@ -156,12 +156,13 @@ impl<'a> Dynamics<'a> {
         &self,
         component: usize,
         latents: &[f64; N_LATENTS],
-        (x, now): (&VehicleState<f64>, &VehicleEvaluation<f64>),
+        (x, u, now): (&VehicleState<f64>, &VehicleInput<f64>, &VehicleEvaluation<f64>),
         time_s: f64,
         batch: &mut NetworkBatch,
     ) -> [f64; N_RESIDUAL] {
         batch.begin(self.share_at(time_s));
-        let mut terms = self.effects_at(component, (x, now), time_s);
+        let spread = self.latents.spread_at(time_s, u);
+        let mut terms = self.effects_at(component, (x, now), spread);
         if batch.has_share() {
             batch.push(features_of(self.vehicle, x, now, self.seen_time_s(time_s)));
             self.evaluate_network(batch);
@@ -171,15 +172,17 @@ impl<'a> Dynamics<'a> {
     }
 
     /// The known effects of a component.
+    ///
+    /// - `spread`: factor on the latent factors over the step.
     fn effects_at(
         &self,
         component: usize,
         (x, now): (&VehicleState<f64>, &VehicleEvaluation<f64>),
-        time_s: f64,
+        spread: f64,
     ) -> CorrectionTerms {
         let amounts = self.amounts(x, now);
         let value = self.known_effects(component, &amounts);
-        CorrectionTerms { value, by_latents: self.effects_by_latents(&amounts, time_s) }
+        CorrectionTerms { value, by_latents: self.effects_by_latents(&amounts, spread) }
     }
 
     /// How large the known effects are.
@@ -206,17 +209,18 @@ impl<'a> Dynamics<'a> {
     }
 
     /// Change of the known effects by a latent factor of one.
+    ///
+    /// - `spread`: factor on the latent factors over the step.
     #[inline(always)]
     pub(super) fn effects_by_latents<T: Lanes>(
         &self,
         amounts: &EffectAmounts<T>,
-        time_s: f64,
+        spread: f64,
     ) -> [[T; N_RESIDUAL]; N_LATENTS] {
         let mut by_latents = [amounts.none(); N_LATENTS];
-        let growth = self.latents.growth_at(time_s);
         for (latent, by_latent) in by_latents.iter_mut().enumerate() {
             if !self.ignored[latent] {
-                let direction = self.latents.directions[latent].map(|change| change * growth);
+                let direction = self.latents.directions[latent].map(|change| change * spread);
                 *by_latent = self.effects.combined(amounts, &direction);
             }
         }

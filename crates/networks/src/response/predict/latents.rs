@@ -21,6 +21,7 @@ use crate::nn::{Expected, NnError, check_number, check_numbers};
 use crate::response::N_EFFECTS;
 use crate::response::physics::effects::{Direction, direction};
 use impactlab_core::numerics::{normal_density, normal_quantile};
+use impactlab_core::vehicle::VehicleInput;
 
 /// Number of latent factors of a motion: of the vehicle and its road, then of the collision.
 pub const N_LATENTS: usize = 8;
@@ -57,6 +58,8 @@ pub(crate) struct Latents {
     pub tail_ratio: f64,
     /// Growth of all standard deviations with time, see [`Widths`].
     pub growth: f64,
+    /// Factor on all standard deviations while a wheel is braked.
+    pub braked: f64,
 }
 
 /// How uncertain a model is along a motion, by latent factors that have a name.
@@ -98,6 +101,9 @@ impl Default for LatentScales {
 /// ```text
 /// s(t) = s (1 + growth t / 4 s)
 /// ```
+///
+/// How a car comes to rest that is braked hangs on what brakes it more than on what its tires do sideways,
+/// and is missed by another share. So there is a factor for the time in which a wheel is braked.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Widths {
     /// Factor on all standard deviations: geometric mean of the two widths.
@@ -106,6 +112,8 @@ pub struct Widths {
     pub tail_ratio: f64,
     /// Growth of the standard deviations of the strengths within 4 s; 0 where they are constant.
     pub growth: f64,
+    /// Factor on the standard deviations of the strengths while something brakes or locks a wheel.
+    pub braked: f64,
 }
 
 /// Time of the growth of [`Widths`], s.
@@ -115,7 +123,7 @@ const GROWTH_END_S: f64 = 12.0;
 
 impl Widths {
     /// A normal distribution with the deviations as they are.
-    pub const NORMAL: Self = Self { widening: 1.0, tail_ratio: 1.0, growth: 0.0 };
+    pub const NORMAL: Self = Self { widening: 1.0, tail_ratio: 1.0, growth: 0.0, braked: 1.0 };
 }
 
 /// The two widths about their geometric mean, the narrower first.
@@ -187,15 +195,19 @@ impl LatentScales {
             step_noise: self.step_noise,
             tail_ratio: Widths::NORMAL.tail_ratio,
             growth: Widths::NORMAL.growth,
+            braked: Widths::NORMAL.braked,
         }
     }
 }
 
 impl Latents {
-    /// Factor on the latent factors at a time.
+    /// Factor on the latent factors over a step.
+    ///
+    /// - `u`: its input.
     #[inline(always)]
-    pub(crate) fn growth_at(&self, time_s: f64) -> f64 {
-        1.0 + self.growth * time_s.min(GROWTH_END_S) / GROWTH_S
+    pub(crate) fn spread_at(&self, time_s: f64, u: &VehicleInput<f64>) -> f64 {
+        let grown = 1.0 + self.growth * time_s.min(GROWTH_END_S) / GROWTH_S;
+        if u.is_braked() { grown * self.braked } else { grown }
     }
 
     /// One of the two widths, which are equally likely.
@@ -243,6 +255,7 @@ fn part_of_normal(j: usize, n: usize) -> LatentShare {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::vehicle::WheelEffort;
 
     #[test]
     fn the_parts_make_up_the_whole() {
@@ -256,6 +269,24 @@ mod tests {
         assert_eq!([part_of_normal(1, 3), part_of_normal(2, 5)].map(|part| part.mean), [0.0; 2]);
         // E z given z > Φ⁻¹(2/3) = 3 φ(0.4307) = 1.0908
         assert!((part_of_normal(2, 3).mean - 1.0908).abs() < 1e-4);
+    }
+
+    #[test]
+    fn what_is_uncertain_is_wider_while_a_wheel_is_braked_and_grows_with_time() {
+        let latents = Latents { growth: 0.5, braked: 1.4, ..LatentScales::default().latents() };
+        let braked_n = |braking_n| VehicleInput {
+            wheels: Some([WheelEffort { braking_n, ..WheelEffort::FREE }; 4]),
+            ..VehicleInput::RELEASED
+        };
+        let at = |time_s, u| latents.spread_at(time_s, &u);
+        assert_eq!(
+            [0.0, 4.0, 50.0].map(|time_s| at(time_s, VehicleInput::RELEASED)),
+            [1.0, 1.5, 2.5]
+        );
+        assert_eq!([0.0, 4.0].map(|time_s| at(time_s, braked_n(300.0))), [1.4, 2.1]);
+        assert_eq!(at(4.0, braked_n(0.0)), 1.5, "wheels that roll freely");
+        let locked = [WheelEffort { locked: 1.0, ..WheelEffort::FREE }; 4];
+        assert_eq!(at(0.0, VehicleInput { wheels: Some(locked), ..VehicleInput::RELEASED }), 1.4);
     }
 
     #[test]

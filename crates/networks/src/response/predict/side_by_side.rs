@@ -42,6 +42,7 @@ impl WithSimd for Evaluation<'_, '_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { dynamics, components, u, time_s, states, batch, points } = self;
         let seen_time_s = dynamics.seen_time_s(time_s);
+        let spread = dynamics.latents.spread_at(time_s, u);
         let u = Splat(simd).input(u);
         let n = Packed::<S>::N;
         for (states, components) in states.chunks(n).zip(components.chunks(n)) {
@@ -61,7 +62,7 @@ impl WithSimd for Evaluation<'_, '_> {
                 }
             }
             let mut by_latents = [[[0.0; N_RESIDUAL]; MAX_LANES]; N_LATENTS];
-            let of_lanes = dynamics.effects_by_latents(&amounts, time_s);
+            let of_lanes = dynamics.effects_by_latents(&amounts, spread);
             for (rows, of_lanes) in by_latents.iter_mut().zip(&of_lanes) {
                 *rows = Packed::rows(of_lanes);
             }

@@ -84,7 +84,8 @@ fn n_population_steps(
     let of_cars = spread_over_cars(unseen.iter().map(|part| part.cars.iter().flatten().copied()));
     let of_motions = spread_over_cars(unseen.iter().map(|part| part.motions.iter().copied()));
     StrengthPopulation::n_fit_steps(cars)
-        + n_calibration_steps(of_cars.iter().chain(&of_motions).flatten().copied())
+        + n_calibration_steps(of_cars.iter().flatten().copied())
+        + n_calibration_steps(of_motions.iter().flatten().copied())
         + StrengthPopulation::n_paths_of_car(n_known + train.len())
 }
 

@@ -10,6 +10,11 @@
 //!
 //! They are of as many motions as the forecasts that are made for a person, so that regions are of one width
 //! for both, with the same random numbers at every scale.
+//!
+//! Widths are those of motions in which no wheel is braked, and by the others comes the factor on them while
+//! one is. Where there are few of either, all have one width.
+
+use std::ops::ControlFlow;
 
 use rayon::prelude::*;
 
@@ -19,11 +24,13 @@ use crate::response::{
     LEAST_MOTIONS, MotionDomain, ResponseCase, ResponseModel, StrengthPopulation, Widths,
 };
 use impactlab_core::uncertainty::PlanarMixture;
-use impactlab_core::vehicle::VehicleState;
+use impactlab_core::vehicle::{VehicleInput, VehicleState};
 
 /// Growths of all deviations, and scales of them, that are tried.
 const GROWTHS: [f64; 3] = [0.0, 0.5, 1.5];
 const SCALES: [f64; 10] = [0.10, 0.14, 0.20, 0.28, 0.39, 0.54, 0.76, 1.06, 1.49, 2.08];
+/// Factors while a wheel is braked that are tried.
+const BRAKED: [f64; 8] = [0.7, 0.85, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5];
 /// Largest ratio of two scales that make the widths of a distribution.
 const MOST_RATIO: f64 = 10.0;
 /// The levels at which the regions shall be right.
@@ -36,9 +43,11 @@ const SHORTFALL: f64 = 3.0;
 const STRIDE_STEPS: usize = 100;
 const N_INSTANTS: usize = 12;
 /// Motions that are asked about, of all cars: some from each.
-const MOST_MOTIONS: usize = 160;
+const MOST_MOTIONS: usize = 240;
 /// Paths of 4 s that take as long to compute as 1 s of the forecast of a motion.
 const PATHS_PER_STRIDE: usize = LEAST_MOTIONS / 4;
+/// Fewest motions with a braked wheel, and without one, by which widths are told apart.
+const LEAST_APART: usize = 20;
 /// Motions for each thread between two reports.
 const MOTIONS_PER_THREAD: usize = 2;
 
@@ -63,14 +72,44 @@ impl<'a> AskedCases<'a> {
         Ok(Self { model, population, cases })
     }
 
-    /// The model with a distribution of one width.
-    fn scaled(&self, widening: f64, growth: f64) -> Result<ResponseModel, LearningError> {
+    /// The model with other widths.
+    fn with(&self, widths: Widths) -> Result<ResponseModel, LearningError> {
         let mut population = self.population.clone();
-        population.set_widths(Widths { widening, growth, ..Widths::NORMAL });
+        population.set_widths(widths);
         let mut model = self.model.copied()?;
         model.set_population(population);
         Ok(model)
     }
+}
+
+/// Which motions are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Looked {
+    All,
+    /// Those without a braked wheel.
+    Free,
+    /// Those in which a wheel is braked at some time.
+    Braked,
+}
+
+impl Looked {
+    fn at(self, case: &ResponseCase) -> bool {
+        match self {
+            Self::All => true,
+            Self::Free => !has_braked_wheel(case),
+            Self::Braked => has_braked_wheel(case),
+        }
+    }
+}
+
+/// Whether there are enough motions with a braked wheel and without one to tell their widths apart.
+fn are_told_apart<'a>(cases: impl Iterator<Item = &'a ResponseCase>) -> bool {
+    let (braked, free): (Vec<_>, Vec<_>) = cases.partition(|case| has_braked_wheel(case));
+    braked.len().min(free.len()) >= LEAST_APART
+}
+
+fn has_braked_wheel(case: &ResponseCase) -> bool {
+    case.inputs.iter().any(VehicleInput::is_braked)
 }
 
 /// At most [`MOST_MOTIONS`] of the trajectories of several parts: every n-th, so that each car has its say.
@@ -84,14 +123,21 @@ where
 }
 
 /// How many steps [`calibrated`] reports: paths of 4 s, or what takes as long.
-pub(super) fn n_calibration_steps<'a>(cases: impl Iterator<Item = &'a ResponseCase>) -> usize {
-    GROWTHS.len() * cases.map(n_steps_of_motion).sum::<usize>()
+pub(super) fn n_calibration_steps<'a>(
+    cases: impl Iterator<Item = &'a ResponseCase> + Clone,
+) -> usize {
+    let is_apart = are_told_apart(cases.clone());
+    let of_case = |case: &ResponseCase| match is_apart && has_braked_wheel(case) {
+        true => BRAKED.len() * n_steps_of_forecast(case),
+        false => GROWTHS.len() * SCALES.len() * n_steps_of_forecast(case),
+    };
+    cases.map(of_case).sum()
 }
 
-/// The same of one motion with every scale.
-fn n_steps_of_motion(case: &ResponseCase) -> usize {
+/// The same of one forecast of a motion.
+fn n_steps_of_forecast(case: &ResponseCase) -> usize {
     let n_strides = case.inputs.len().min(N_INSTANTS * STRIDE_STEPS).div_ceil(STRIDE_STEPS);
-    n_strides * SCALES.len() * PATHS_PER_STRIDE
+    n_strides * PATHS_PER_STRIDE
 }
 
 /// Calibrates anew how wide the regions of cars are that a model has not seen, and of those it has learned
@@ -138,7 +184,7 @@ pub fn recalibrate(
 }
 
 /// The widths with which the regions hold as many of the recorded positions as they say, early and late
-/// in the motions. `None` if it was broken off.
+/// in the motions, with no wheel braked and with one. `None` if it was broken off.
 ///
 /// - `what`: what is calibrated, for a person.
 pub(super) fn calibrated(
@@ -147,10 +193,13 @@ pub(super) fn calibrated(
     steps: &mut FitSteps<'_, '_>,
 ) -> Result<Option<Widths>, LearningError> {
     let pairs = pairs_of_scales();
+    let is_apart = are_told_apart(asked.iter().flat_map(|part| part.cases.iter().copied()));
+    let (first, n_rounds) =
+        if is_apart { (Looked::Free, GROWTHS.len() + 1) } else { (Looked::All, GROWTHS.len()) };
     let mut best = (f64::INFINITY, Widths::NORMAL);
     for (number, growth) in GROWTHS.into_iter().enumerate() {
-        steps.name(format!("{what}, {} of {}", number + 1, GROWTHS.len()));
-        let Some(held) = held_with(asked, growth, &pairs, steps)? else { return Ok(None) };
+        steps.name(format!("{what}, {} of {n_rounds}", number + 1));
+        let Some(held) = held_with(asked, first, (growth, &pairs), steps)? else { return Ok(None) };
         for (pair, held) in pairs.iter().zip(&held) {
             let off = off(held);
             if off < best.0 {
@@ -158,7 +207,14 @@ pub(super) fn calibrated(
             }
         }
     }
-    Ok(Some(best.1))
+    if !is_apart {
+        return Ok(Some(best.1));
+    }
+    steps.name(format!("{what}, {n_rounds} of {n_rounds}"));
+    let tried = BRAKED.map(|braked| Widths { braked, ..best.1 });
+    let Some(held) = held_braked(asked, &tried, steps)? else { return Ok(None) };
+    let found = held.iter().map(off).zip(tried).min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(found.map(|(_, widths)| widths))
 }
 
 /// Two scales, by their numbers, the narrower first.
@@ -168,7 +224,8 @@ struct ScalePair([usize; 2]);
 impl ScalePair {
     fn widths(self, growth: f64) -> Widths {
         let [narrow, wide] = self.0.map(|idx| SCALES[idx]);
-        Widths { widening: (narrow * wide).sqrt(), tail_ratio: wide / narrow, growth }
+        let (widening, tail_ratio) = ((narrow * wide).sqrt(), wide / narrow);
+        Widths { widening, tail_ratio, growth, ..Widths::NORMAL }
     }
 }
 
@@ -179,34 +236,90 @@ fn pairs_of_scales() -> Vec<ScalePair> {
 
 /// The recorded positions that the regions hold at each instant, with each pair of scales; `None` if it
 /// was broken off.
+///
+/// - `looked`: at which motions.
 fn held_with(
     asked: &[AskedCases<'_>],
-    growth: f64,
-    pairs: &[ScalePair],
+    looked: Looked,
+    (growth, pairs): (f64, &[ScalePair]),
     steps: &mut FitSteps<'_, '_>,
 ) -> Result<Option<Vec<HeldByTime>>, LearningError> {
-    let mut counts = vec![HeldByTime::default(); pairs.len()];
-    let n_together = MOTIONS_PER_THREAD * rayon::current_num_threads();
+    let tried = SCALES.map(|widening| Widths { widening, growth, ..Widths::NORMAL });
+    let mut counts = Counts(vec![HeldByTime::default(); pairs.len()]);
     for part in asked {
+        let count = |models: &[ResponseModel], case: &ResponseCase| -> Result<_, LearningError> {
+            let forecasts = Forecasts::new(models, case)?;
+            let mixed = |idx: usize, &ScalePair([narrow, wide]): &ScalePair| {
+                PlanarMixture::mixed([
+                    &forecasts.positions[narrow][idx],
+                    &forecasts.positions[wide][idx],
+                ])
+            };
+            Ok(forecasts.held(pairs, mixed))
+        };
+        if counts.add(part, (&tried, looked), steps, count)?.is_break() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(counts.0))
+}
+
+/// The same of motions in which a wheel is braked, with each of some widths.
+fn held_braked(
+    asked: &[AskedCases<'_>],
+    tried: &[Widths],
+    steps: &mut FitSteps<'_, '_>,
+) -> Result<Option<Vec<HeldByTime>>, LearningError> {
+    let numbers: Vec<usize> = (0..tried.len()).collect();
+    let mut counts = Counts(vec![HeldByTime::default(); tried.len()]);
+    for part in asked {
+        let count = |models: &[ResponseModel], case: &ResponseCase| -> Result<_, LearningError> {
+            let forecasts = Forecasts::new(models, case)?;
+            let own = |idx: usize, number: &usize| forecasts.positions[*number][idx].clone();
+            Ok(forecasts.held(&numbers, own))
+        };
+        if counts.add(part, (tried, Looked::Braked), steps, count)?.is_break() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(counts.0))
+}
+
+/// The positions that are held by each of what is tried.
+struct Counts(Vec<HeldByTime>);
+
+impl Counts {
+    /// Adds those of the motions of a part.
+    ///
+    /// - `(tried, looked)`: widths that each motion is forecast with, and which motions are looked at;
+    /// - `count`: the positions of one motion, by its forecasts with these widths.
+    fn add(
+        &mut self,
+        part: &AskedCases<'_>,
+        (tried, looked): (&[Widths], Looked),
+        steps: &mut FitSteps<'_, '_>,
+        count: impl Fn(&[ResponseModel], &ResponseCase) -> Result<Vec<HeldByTime>, LearningError> + Sync,
+    ) -> Result<ControlFlow<()>, LearningError> {
         let models: Vec<ResponseModel> =
-            SCALES.iter().map(|scale| part.scaled(*scale, growth)).collect::<Result<_, _>>()?;
-        for cases in part.cases.chunks(n_together) {
-            let of_cases: Vec<Vec<HeldByTime>> = cases
-                .par_iter()
-                .map(|case| held_positions(&models, case, pairs))
-                .collect::<Result<_, _>>()?;
+            tried.iter().map(|widths| part.with(*widths)).collect::<Result<_, _>>()?;
+        let n_together = MOTIONS_PER_THREAD * rayon::current_num_threads();
+        let cases: Vec<&ResponseCase> =
+            part.cases.iter().copied().filter(|case| looked.at(case)).collect();
+        for cases in cases.chunks(n_together) {
+            let of_cases: Vec<Vec<HeldByTime>> =
+                cases.par_iter().map(|case| count(&models, case)).collect::<Result<_, _>>()?;
             for of_case in &of_cases {
-                for (sums, at) in counts.iter_mut().zip(of_case) {
+                for (sums, at) in self.0.iter_mut().zip(of_case) {
                     sums.iter_mut().zip(at).for_each(|(sum, at)| sum.add(*at));
                 }
             }
-            let n_steps = cases.iter().map(|case| n_steps_of_motion(case)).sum();
-            if steps.advance(n_steps).is_break() {
-                return Ok(None);
+            let n_steps = cases.iter().map(|case| n_steps_of_forecast(case)).sum::<usize>();
+            if steps.advance(n_steps * tried.len()).is_break() {
+                return Ok(ControlFlow::Break(()));
             }
         }
+        Ok(ControlFlow::Continue(()))
     }
-    Ok(Some(counts))
 }
 
 /// Recorded positions in the region of each level, and all of them.
@@ -239,44 +352,71 @@ fn off(held: &HeldByTime) -> f64 {
     held.iter().map(|at| at.all as f64 * at.off()).sum::<f64>() / f64::max(all as f64, 1.0)
 }
 
-/// The recorded positions of one motion that the regions hold with each pair of scales.
-///
-/// - `models`: with each scale.
-fn held_positions(
-    models: &[ResponseModel],
-    case: &ResponseCase,
-    pairs: &[ScalePair],
-) -> Result<Vec<HeldByTime>, LearningError> {
-    let mut held = vec![HeldByTime::default(); pairs.len()];
-    let Some(initial) = case.states.first() else { return Ok(held) };
-    let inputs = &case.inputs[..case.inputs.len().min(N_INSTANTS * STRIDE_STEPS)];
-    let steps = (1..=N_INSTANTS).map(|instant| instant * STRIDE_STEPS);
-    let recorded: Vec<(usize, &VehicleState<f64>)> = steps
-        .filter(|at| *at <= inputs.len())
-        .map_while(|at| Some((at, case.states.get(at)?)))
-        .collect();
-    // The draws of one scale at a time are in memory.
-    let positions_with = |model: &ResponseModel| -> Result<Vec<PlanarMixture>, LearningError> {
-        let forecast = model.predictor(&case.vehicle)?.forecast(initial, inputs);
-        Ok(recorded.iter().map(|(at, _)| forecast.position(*at)).collect())
-    };
-    let positions: Vec<Vec<PlanarMixture>> =
-        models.iter().map(positions_with).collect::<Result<_, LearningError>>()?;
-    for (instant, (_, state)) in recorded.iter().enumerate() {
-        for (held, ScalePair([narrow, wide])) in held.iter_mut().zip(pairs) {
-            let both =
-                PlanarMixture::mixed([&positions[*narrow][instant], &positions[*wide][instant]]);
-            let level = both.level_of([state.x_m, state.y_m]);
-            held[instant] =
-                Held { inside: LEVELS.map(|limit| usize::from(level <= limit)), all: 1 };
-        }
+/// Forecasts of one motion with several models, and where it was, at every instant that it reaches.
+struct Forecasts {
+    recorded: Vec<[f64; 2]>,
+    /// Of each model, at each instant.
+    positions: Vec<Vec<PlanarMixture>>,
+}
+
+impl Forecasts {
+    fn new(models: &[ResponseModel], case: &ResponseCase) -> Result<Self, LearningError> {
+        let Some(initial) = case.states.first() else {
+            return Ok(Self { recorded: Vec::new(), positions: vec![Vec::new(); models.len()] });
+        };
+        let inputs = &case.inputs[..case.inputs.len().min(N_INSTANTS * STRIDE_STEPS)];
+        let steps = (1..=N_INSTANTS).map(|instant| instant * STRIDE_STEPS);
+        let recorded: Vec<(usize, &VehicleState<f64>)> = steps
+            .filter(|at| *at <= inputs.len())
+            .map_while(|at| Some((at, case.states.get(at)?)))
+            .collect();
+        // The draws of one model at a time are in memory.
+        let positions_with = |model: &ResponseModel| -> Result<Vec<PlanarMixture>, LearningError> {
+            let forecast = model.predictor(&case.vehicle)?.forecast(initial, inputs);
+            Ok(recorded.iter().map(|(at, _)| forecast.position(*at)).collect())
+        };
+        let positions = models.iter().map(positions_with).collect::<Result<_, _>>()?;
+        Ok(Self {
+            recorded: recorded.iter().map(|(_, state)| [state.x_m, state.y_m]).collect(),
+            positions,
+        })
     }
-    Ok(held)
+
+    /// The recorded positions that are held with each of what is tried.
+    ///
+    /// - `distribution`: of the position at an instant, by one of these.
+    fn held<T>(
+        &self,
+        tried: &[T],
+        distribution: impl Fn(usize, &T) -> PlanarMixture,
+    ) -> Vec<HeldByTime> {
+        let mut held = vec![HeldByTime::default(); tried.len()];
+        for (instant, recorded) in self.recorded.iter().enumerate() {
+            for (held, tried) in held.iter_mut().zip(tried) {
+                let level = distribution(instant, tried).level_of(*recorded);
+                let inside = LEVELS.map(|limit| usize::from(level <= limit));
+                held[instant] = Held { inside, all: 1 };
+            }
+        }
+        held
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::vehicle::{Preset, WheelEffort};
+
+    fn case(name: usize) -> ResponseCase {
+        ResponseCase {
+            name: name.to_string(),
+            vehicle: Preset::Reference.parameters(),
+            states: Vec::new(),
+            inputs: Vec::new(),
+            spins: false,
+            digest: String::new(),
+        }
+    }
 
     #[test]
     fn pairs_of_scales_are_widths_about_their_geometric_mean() {
@@ -301,15 +441,29 @@ mod tests {
     }
 
     #[test]
-    fn every_car_has_its_say_among_the_motions_that_are_asked_about() {
-        let case = |name: usize| ResponseCase {
-            name: name.to_string(),
-            vehicle: impactlab_core::vehicle::Preset::Reference.parameters(),
-            states: Vec::new(),
-            inputs: Vec::new(),
-            spins: false,
-            digest: String::new(),
+    fn motions_with_a_braked_wheel_are_told_apart_where_there_are_enough() {
+        let braked = [WheelEffort { braking_n: 500.0, ..WheelEffort::FREE }; 4];
+        let case = |wheels| ResponseCase {
+            inputs: vec![VehicleInput { wheels, ..VehicleInput::RELEASED }; 100],
+            ..case(0)
         };
+        let mut cases = vec![case(None); LEAST_APART];
+        cases.extend(vec![case(Some(braked)); LEAST_APART - 1]);
+        // Wheels that roll freely are not braked.
+        cases.push(case(Some([WheelEffort::FREE; 4])));
+        assert!(!are_told_apart(cases.iter()));
+        let of_one = PATHS_PER_STRIDE * GROWTHS.len() * SCALES.len();
+        assert_eq!(n_calibration_steps(cases.iter()), 2 * LEAST_APART * of_one);
+        cases.push(case(Some(braked)));
+        assert!(are_told_apart(cases.iter()));
+        let n_looked = |looked: Looked| cases.iter().filter(|case| looked.at(case)).count();
+        assert_eq!([Looked::All, Looked::Free, Looked::Braked].map(n_looked), [41, 21, 20]);
+        let of_braked = PATHS_PER_STRIDE * BRAKED.len();
+        assert_eq!(n_calibration_steps(cases.iter()), 21 * of_one + 20 * of_braked);
+    }
+
+    #[test]
+    fn every_car_has_its_say_among_the_motions_that_are_asked_about() {
         let cases: Vec<ResponseCase> = (0..3 * MOST_MOTIONS).map(case).collect();
         let [few, many] = [&cases[..40], &cases[40..]].map(<[ResponseCase]>::iter);
         let asked = spread_over_cars([few, many].into_iter());
