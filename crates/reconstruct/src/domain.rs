@@ -83,9 +83,7 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
         false => vehicle_caveats(cars),
     };
     let damage = damage_off_car(&evidence.damage, cars);
-    let odd = evidence.odd_sigmas().into_iter().chain(evidence.odd_drags());
-    let odd = odd.chain(evidence.odd_numbers());
-    let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
+    let odd = evidence.odd().into_iter().map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
     vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
 }
 

@@ -10,7 +10,7 @@ const MOST: f64 = 1.2;
 
 impl Evidence {
     /// The drag factors that the stated friction of the road does not allow, in words.
-    pub fn odd_drags(&self) -> Vec<Phrase> {
+    pub(super) fn odd_drags(&self) -> Vec<Phrase> {
         let Some(friction) = self.road_friction() else { return Vec::new() };
         let of_skid = |skid: &Option<SkidBefore>| skid.as_ref().and_then(SkidBefore::drag_factor);
         let drags = [

@@ -229,10 +229,7 @@ impl InputFile {
                 Ok(summary.contents().into_iter().chain(summary.unit_note.clone()).collect())
             }
             Self::Vehicle(vehicle) => Ok(said(&unusual_phrases(vehicle))),
-            Self::Evidence(evidence) => {
-                let odd = [evidence.odd_sigmas(), evidence.odd_drags(), evidence.odd_numbers()];
-                Ok(said(&odd.concat()))
-            }
+            Self::Evidence(evidence) => Ok(said(&evidence.odd())),
             Self::Scenario(scenario) => {
                 Ok(doubtful(scenario).into_iter().map(|caveat| caveat.text).collect())
             }
