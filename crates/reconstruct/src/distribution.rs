@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use impactlab_core::numerics::{normal_cdf, normal_quantile};
+use impactlab_core::numerics::{TruncatedNormal, normal_cdf};
 
 /// Standard normal variable below which 95 % lie.
 const Z_95: f64 = 1.645;
@@ -48,17 +48,19 @@ impl Distribution {
     ///
     /// ```text
     /// uniform   low + (high − low) Φ(z)
-    /// normal    μ + σ Φ⁻¹(Φ(a) + (Φ(b) − Φ(a)) Φ(z))        a, b: the ends in units of σ
     /// ```
+    ///
+    /// A normal variable is a [`TruncatedNormal`], as is the logarithm of a lognormal one.
     pub fn at(&self, z: f64) -> f64 {
         let share = normal_cdf(z);
         match *self {
             Self::Uniform { low, high } => low + (high - low) * share,
             Self::Normal { mean, sigma, low, high } => {
-                cut([mean, sigma], [low, high], share).clamp(low, high)
+                TruncatedNormal::new([mean, sigma], [low, high]).quantile(share)
             }
             Self::LogNormal { median, sigma, low, high } => {
-                cut([median.ln(), sigma], [low.ln(), high.ln()], share).exp().clamp(low, high)
+                let log = TruncatedNormal::new([median.ln(), sigma], [low.ln(), high.ln()]);
+                log.quantile(share).exp().clamp(low, high)
             }
         }
     }
@@ -76,14 +78,6 @@ impl Distribution {
             | Self::LogNormal { low, high, .. } => [low, high],
         }
     }
-}
-
-/// Quantile of a normal distribution that is cut off at both ends.
-fn cut([mean, sigma]: [f64; 2], ends: [f64; 2], share: f64) -> f64 {
-    let [below, up_to] = ends.map(|end| normal_cdf((end - mean) / sigma));
-    // The quantile is infinite at 0 and 1.
-    let share = (below + (up_to - below) * share).clamp(1e-15, 1.0 - 1e-15);
-    mean + sigma * normal_quantile(share)
 }
 
 #[cfg(test)]

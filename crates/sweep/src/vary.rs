@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use impactlab_core::numerics::{normal_cdf, normal_quantile};
+use impactlab_core::numerics::TruncatedNormal;
 
 /// A varied input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -110,8 +110,7 @@ impl Distribution {
             Self::Triangular { .. } => "[low, mode, high] in this order with low < high",
             Self::List { .. } => "",
         };
-        let [below, above] = self.cut();
-        let is_empty = is_good && above - below < 1e-9;
+        let is_empty = is_good && self.normal().is_some_and(|normal| normal.share() < 1e-9);
         match (is_good, is_empty) {
             (true, false) => None,
             (true, true) => Some("ends between which the distribution has some share".to_owned()),
@@ -157,34 +156,32 @@ impl Distribution {
         }
     }
 
-    /// Probabilities below both ends, of a distribution that may be cut off.
-    fn cut(&self) -> [f64; 2] {
-        let below = |z: Option<f64>, open: f64| z.map_or(open, normal_cdf);
+    /// That of a normal number, or of the logarithm of a lognormal one over its median.
+    fn normal(&self) -> Option<TruncatedNormal> {
+        let (inf, no) = (f64::INFINITY, f64::NEG_INFINITY);
         match *self {
             Self::Normal { mean, sigma, low, high } => {
-                let z = |end: Option<f64>| end.map(|end| (end - mean) / sigma);
-                [below(z(low), 0.0), below(z(high), 1.0)]
+                let ends = [low.unwrap_or(no), high.unwrap_or(inf)];
+                Some(TruncatedNormal::new([mean, sigma], ends))
             }
             Self::Lognormal { median, log_sigma, low, high } => {
-                let z = |end: Option<f64>| end.map(|end| (end / median).ln() / log_sigma);
-                [below(z(low), 0.0), below(z(high), 1.0)]
+                let log = |end: f64| (end / median).ln();
+                let ends = [low.map_or(no, log), high.map_or(inf, log)];
+                Some(TruncatedNormal::new([0.0, log_sigma], ends))
             }
-            _ => [0.0, 1.0],
+            _ => None,
         }
     }
 
     /// The value at a share of the probability, between 0 and 1.
     pub fn at(&self, share: f64) -> InputValue {
         let number = |number: f64| InputValue { number, value: Value::from(number) };
-        let [below, above] = self.cut();
-        let z = normal_quantile((below + share * (above - below)).clamp(1e-15, 1.0 - 1e-15));
+        let normal = self.normal().map_or(f64::NAN, |normal| normal.quantile(share));
         match *self {
             Self::Uniform { low, high } => number((low + share * (high - low)).clamp(low, high)),
-            Self::Normal { mean, sigma, low, high } => {
-                number(within(mean + sigma * z, [low, high]))
-            }
-            Self::Lognormal { median, log_sigma, low, high } => {
-                number(within(median * (log_sigma * z).exp(), [low, high]))
+            Self::Normal { .. } => number(normal),
+            Self::Lognormal { median, low, high, .. } => {
+                number(within(median * normal.exp(), [low, high]))
             }
             Self::Triangular { low, mode, high } => {
                 let (width, left) = (high - low, mode - low);

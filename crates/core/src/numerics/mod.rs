@@ -31,7 +31,9 @@ pub use gaussian_process::{
 pub use interpolation::interpolate;
 pub use latin::{latin_normals, latin_uniforms};
 pub use least_squares::{LeastSquares, LeastSquaresProblem, levenberg_marquardt};
-pub use normal::{NORMAL_QUANTILE_95, SIGMA_PER_MAD, normal_cdf, normal_density, normal_quantile};
+pub use normal::{
+    NORMAL_QUANTILE_95, SIGMA_PER_MAD, TruncatedNormal, normal_cdf, normal_density, normal_quantile,
+};
 pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
 pub use packed::{MAX_LANES, Packed};
 pub use plane::{line_length, polygon_area, polygon_holds};

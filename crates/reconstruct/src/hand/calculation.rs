@@ -14,11 +14,12 @@ use std::collections::BTreeMap;
 use rand::RngExt as _;
 
 use crate::evidence::Stated;
-use crate::hand::cut::Cut;
 use crate::hand::field::POINTS;
 use crate::hand::values::HandValues;
 use crate::hand::{HandDefault, HandField, HandMethod, HandOutput};
-use impactlab_core::numerics::{normal_quantile, quantile_of_sorted, random_stream};
+use impactlab_core::numerics::{
+    TruncatedNormal, normal_quantile, quantile_of_sorted, random_stream,
+};
 use impactlab_core::ranges::{HAND_COORDINATE, OutOfRange};
 use impactlab_core::units::{Estimate, Phrase};
 
@@ -68,6 +69,12 @@ impl HandNumber {
     /// The rule by which it is off together with others: one that stands for their standard deviations.
     pub fn rule(&self) -> Option<&'static str> {
         self.field.rule.filter(|_| self.is_sigma_assumed)
+    }
+
+    /// How it is drawn if it is not exact: cut off at the limits of its range.
+    fn distribution(&self) -> TruncatedNormal {
+        let range = &self.field.range;
+        TruncatedNormal::new([self.value, self.sigma], [range.low, range.high])
     }
 }
 
@@ -421,13 +428,13 @@ impl HandQuestion<'_> {
         let solve = self.method.formula().solve;
         let fields = self.method.fields();
         let varied: Vec<&HandNumber> = numbers.iter().filter(|number| number.sigma > 0.0).collect();
-        let varied: Vec<(usize, Cut, usize)> = varied
+        let varied: Vec<(usize, TruncatedNormal, usize)> = varied
             .iter()
             .enumerate()
             .filter_map(|(own, number)| {
                 let idx = fields.iter().position(|field| field.key == number.field.key)?;
                 let first = varied.iter().position(|of| of.rule() == number.rule());
-                Some((idx, Cut::new(number), number.rule().and(first).unwrap_or(own)))
+                Some((idx, number.distribution(), number.rule().and(first).unwrap_or(own)))
             })
             .collect();
         let mut probabilities = vec![0.0; varied.len()];
@@ -436,13 +443,13 @@ impl HandQuestion<'_> {
         let (mut numbers, mut points) = (table.to_vec(), self.points_m.to_vec());
         let mut outputs = Vec::with_capacity(draws);
         for _ in 0..draws {
-            for (own, (idx, cut, first)) in varied.iter().enumerate() {
+            for (own, (idx, distribution, first)) in varied.iter().enumerate() {
                 // One that is off together with an earlier one has its probability.
                 let is_own = *first == own;
                 probabilities[own] =
                     if is_own { rng.random::<f64>() } else { probabilities[*first] };
                 if let Some(entry) = numbers.get_mut(*idx) {
-                    *entry = Some(cut.at(probabilities[own]));
+                    *entry = Some(distribution.quantile(probabilities[own]));
                 }
             }
             if point_error > 0.0 {

@@ -11,7 +11,6 @@ mod baseline;
 mod calculation;
 mod checks;
 mod crush;
-mod cut;
 mod field;
 mod method;
 mod momentum;
