@@ -16,6 +16,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
+use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_networks::force::{ForceCase, ForceScenario};
 
 type Feature = fn(&ForceScenario) -> f64;
@@ -84,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         let within = |z: f64| all.iter().filter(|of| of[i].abs() < z * rms(i)).count() as f64 / n;
         let mean = all.iter().map(|of| of[i]).sum::<f64>() / n;
-        let [half, ninety] = [within(0.674), within(1.645)].map(|share| 100.0 * share);
+        let [half, ninety] = [within(0.674), within(NORMAL_QUANTILE_95)].map(|share| 100.0 * share);
         println!(
             "{name}: rms {:.3}, mean {mean:.3}, {half:.0} % within 0.674 rms, {ninety:.0} % within 1.645 rms",
             rms(i)

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use impactlab_core::collision::contact_work_j;
 use impactlab_core::data::StruckSide;
+use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_networks::force::{ForceCase, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::shipped::ModelSource;
@@ -160,7 +161,10 @@ fn any_collision_is_finite_and_outside_of_the_training_as_uncertain_as_the_physi
         n_physics += 1;
         let [low, median, high] = impulse_quantiles(&predicted, [0.05, 0.5, 0.95]);
         let below = (median / low).ln();
-        assert!(below > 0.9 * 1.645 * IMPULSE_LOG_STD, "{i}: {low} {median} {high}, {scenario:?}");
+        assert!(
+            below > 0.9 * NORMAL_QUANTILE_95 * IMPULSE_LOG_STD,
+            "{i}: {low} {median} {high}, {scenario:?}"
+        );
         // Above, energy sets a limit as well.
         assert!(high > 1.1 * median, "{i}: {low} {median} {high}, {scenario:?}");
         if let Some(work) = least_work(&scenario, &predicted)

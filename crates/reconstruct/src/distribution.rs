@@ -3,10 +3,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use impactlab_core::numerics::{TruncatedNormal, normal_cdf};
-
-/// Standard normal variable below which 95 % lie.
-const Z_95: f64 = 1.645;
+use impactlab_core::numerics::{NORMAL_QUANTILE_95, TruncatedNormal, normal_cdf};
 
 /// Prior distribution of one quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
@@ -67,7 +64,7 @@ impl Distribution {
 
     /// Central interval of 90 %.
     pub fn ninety(&self) -> [f64; 2] {
-        [-Z_95, Z_95].map(|z| self.at(z))
+        [-NORMAL_QUANTILE_95, NORMAL_QUANTILE_95].map(|z| self.at(z))
     }
 
     /// The ends of the values that it can take.
@@ -83,6 +80,13 @@ impl Distribution {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// “90 %” began at a share of 4.998 %.
+    #[test]
+    fn ninety_per_cent_of_a_range_leave_a_twentieth_at_each_end() {
+        let [low, high] = Distribution::Uniform { low: 0.0, high: 80.0 }.ninety();
+        assert!((low - 4.0).abs() < 1e-9 && (high - 76.0).abs() < 1e-9, "{low} {high}");
+    }
 
     #[test]
     fn medians_ends_and_order_are_kept() {

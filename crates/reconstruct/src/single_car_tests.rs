@@ -349,7 +349,7 @@ fn braking_may_begin_long_after_a_stated_place() {
         let evidence = read(&format!("kind = \"single_car\"\n[car]\n{start}{mark}"));
         let prior = Prior::new(&evidence, &Cars::new(&evidence, None, None));
         let brakes = prior.components().iter().find(|of| of.latent == Latent::BrakeStart).unwrap();
-        brakes.distribution.at(1.645)
+        brakes.distribution.ninety()[1]
     };
     assert!(latest_s("") < 1.1 && latest_s("[start]\nx_m = 0\ny_m = 0\n") > 3.0);
 }
