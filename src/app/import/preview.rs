@@ -5,7 +5,7 @@ use impactlab_core::data::{
     Table, TimeSeries, VelocityFit, check_file, contact_interval, series_of_table, velocity_fit,
 };
 use impactlab_core::error_chain;
-use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::numerics::median;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_document::figure::{Axis, Figure, FigureElement, ForceFigure, Role, force_figure};
@@ -193,9 +193,7 @@ fn path_numbers(series: &TimeSeries, units: UnitSystem) -> Option<[(&'static str
 
 /// The usual time between two rows and the rate.
 fn sampling(time_s: &[f64]) -> String {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    let step_s = quantile_of_sorted(&steps, 0.5).unwrap_or(0.0);
+    let step_s = median(time_s.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(0.0);
     let rate_hz = 1.0 / step_s;
     let decimals = if rate_hz < 10.0 { 2 } else { 0 };
     format!("every {} ({rate_hz:.decimals$} Hz)", duration(step_s))

@@ -8,7 +8,7 @@ use crate::data::{
     Channel, ColumnMap, ColumnRef, ColumnSource, Correction, DataError, FileKind, Note,
     SeriesError, Table, TimeSeries,
 };
-use crate::numerics::quantile_of_sorted;
+use crate::numerics::{median, quantile_of_sorted};
 use crate::ranges::TIME_STEP;
 use crate::units::{Quantity, Unit};
 
@@ -108,9 +108,7 @@ pub(super) fn go_on(time_s: &mut [f64]) -> Option<Note> {
     if n_turns == 0 {
         return None;
     }
-    let mut forward: Vec<f64> = steps().filter(|step_s| *step_s > 0.0).collect();
-    forward.sort_by(f64::total_cmp);
-    let longest_s = LONGEST_STEP * quantile_of_sorted(&forward, 0.5)?;
+    let longest_s = LONGEST_STEP * median(steps().filter(|step_s| *step_s > 0.0))?;
     let fits = |period_s: &f64| {
         let turn = |step_s: f64| step_s >= 0.0 || (0.0..=longest_s).contains(&(step_s + period_s));
         time_s.iter().all(|t| (-ZERO_S..*period_s).contains(t)) && steps().all(turn)

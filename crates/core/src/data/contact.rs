@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use crate::data::{ForceHistory, Sampling};
-use crate::numerics::{SIGMA_PER_MAD, quantile_of_sorted};
+use crate::numerics::{SIGMA_PER_MAD, median};
 
 /// Shortest time without contact that separates two pulses, s.
 pub const MIN_GAP_S: f64 = 0.025;
@@ -140,13 +140,12 @@ fn ends(magnitude_n: &[f64], peak_n: f64) -> [Range<usize>; 2] {
 /// if there are too few samples.
 fn noise_n(axis: &[f64], end: &Range<usize>) -> f64 {
     let part = axis.get(end.clone()).unwrap_or_default();
-    let mut sizes: Vec<f64> =
+    let sizes: Vec<f64> =
         part.windows(3).map(|window| (window[0] - 2.0 * window[1] + window[2]).abs()).collect();
     if sizes.len() < MIN_DIFFERENCES {
         return 0.0;
     }
-    sizes.sort_by(f64::total_cmp);
-    SIGMA_PER_MAD * quantile_of_sorted(&sizes, 0.5).unwrap_or(0.0) / 6.0_f64.sqrt()
+    SIGMA_PER_MAD * median(sizes).unwrap_or(0.0) / 6.0_f64.sqrt()
 }
 
 /// Number of samples, an odd one, over which a noisy force is averaged.

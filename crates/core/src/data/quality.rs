@@ -13,7 +13,7 @@ use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
     contact_interval, cut_at_s, quality_jumps, quality_motion,
 };
-use crate::numerics::{SIGMA_PER_MAD, quantile_of_sorted};
+use crate::numerics::{SIGMA_PER_MAD, median};
 
 /// Momentum residual above which a warning is raised, as a share of the impulse.
 const MOMENTUM_RESIDUAL: f64 = 0.01;
@@ -276,7 +276,7 @@ fn stated(kind: FlagKind, severity: Severity) -> Flag {
 
 fn check_sampling(time_s: &[f64]) -> Vec<Flag> {
     let steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let Some(typical) = median(steps.clone()) else {
+    let Some(typical) = median(steps.iter().copied()) else {
         return Vec::new();
     };
     let longest = steps.iter().zip(time_s).max_by(|a, b| a.0.total_cmp(b.0));
@@ -450,9 +450,4 @@ fn momentum_residual(force: &ForceHistory, expected_n_s: (f64, f64)) -> Option<F
         false => Severity::Warning,
     };
     Flag::beyond(FlagKind::MomentumResidual, severity, residual, MOMENTUM_RESIDUAL)
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    quantile_of_sorted(&values, 0.5)
 }

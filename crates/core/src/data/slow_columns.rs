@@ -10,7 +10,7 @@ use std::ops::Range;
 use crate::data::error::quoted;
 use crate::data::si_values::{compass_quantity, instants_s};
 use crate::data::{Channel, ColumnUse, Formula, Note, ReadSettings, Table};
-use crate::numerics::{counted_turns_rad, quantile_of_sorted};
+use crate::numerics::{counted_turns_rad, median, quantile_of_sorted};
 use crate::units::{Quantity, three_digits};
 
 /// Longest time between two values of a column, in steps that are usual there, and least number of its values.
@@ -109,11 +109,10 @@ fn usual_step_s(own: &[(usize, f64)], time_s: &[f64]) -> Option<f64> {
     }
     let head_s = at_s(own.first()?.0)? - time_s.first()?;
     let tail_s = time_s.last()? - at_s(own.last()?.0)?;
-    n_rows.sort_by(f64::total_cmp);
     steps_s.sort_by(f64::total_cmp);
     let usual_s = quantile_of_sorted(&steps_s, 0.5)?;
     let longest_s = steps_s.last()?.max(head_s).max(tail_s);
-    let is_slower = quantile_of_sorted(&n_rows, 0.5)? >= 2.0 && own.len() >= LEAST_VALUES;
+    let is_slower = median(n_rows)? >= 2.0 && own.len() >= LEAST_VALUES;
     (is_slower && longest_s <= LONGEST_STEP * usual_s).then_some(usual_s)
 }
 

@@ -135,6 +135,21 @@ pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
     Some(below + position.fract() * (above - below))
 }
 
+/// Median of values in any order: the mean of the two in the middle where their number is even.
+///
+/// - returns `None` if there are no values.
+///
+/// ```
+/// # use impactlab_core::numerics::median;
+/// assert_eq!(median([9.0, 1.0, 2.0]), Some(2.0));
+/// assert_eq!(median([9.0, 1.0, 2.0, 4.0]), Some(3.0));
+/// ```
+pub fn median(values: impl IntoIterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    quantile_of_sorted(&values, 0.5)
+}
+
 /// Standard error of [`quantile_of_sorted`] for independent values: half the distance between the
 /// quantiles at p ± √(p (1 − p)/n), by how many of n values lie below the true quantile.
 ///

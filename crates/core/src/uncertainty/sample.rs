@@ -129,11 +129,6 @@ impl CurveQuantities {
         let at = |probability| quantile_of_sorted(&sorted, probability);
         Some([at((1.0 - level) / 2.0)?, at((1.0 + level) / 2.0)?])
     }
-
-    /// Median of the draws of one quantity; `None` without draws.
-    pub fn median(values: &[f64]) -> Option<f64> {
-        Self::interval(values, 0.0).map(|[median, _]| median)
-    }
 }
 
 #[cfg(test)]
@@ -229,7 +224,6 @@ mod tests {
         let row: Vec<f64> = (0..=100).rev().map(f64::from).collect();
         let [low, high] = CurveQuantities::interval(&row, 0.9).unwrap();
         assert!((low - 5.0).abs() < 1e-9 && (high - 95.0).abs() < 1e-9, "{low} {high}");
-        assert_eq!(CurveQuantities::median(&row), Some(50.0));
-        assert_eq!(CurveQuantities::median(&[]), None);
+        assert_eq!(CurveQuantities::interval(&[], 0.9), None);
     }
 }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::evaluate::{CaseScore, KnownEvidence, ReconstructionMethod, SCORED, ScoredQuantity};
-use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::numerics::{median, quantile_of_sorted};
 
 /// Effective sample size from which on intervals are relied on.
 pub const SUFFICIENT_ESS: f64 = 400.0;
@@ -71,7 +71,8 @@ impl MethodSummary {
     ) -> Option<Self> {
         let is_of = |score: &&CaseScore| score.known == known && score.method == method;
         let scores: Vec<&CaseScore> = scores.iter().filter(is_of).collect();
-        let seconds = sorted(scores.iter().map(|score| score.seconds));
+        let mut seconds: Vec<f64> = scores.iter().map(|score| score.seconds).collect();
+        seconds.sort_by(f64::total_cmp);
         let ess: Vec<f64> = scores.iter().filter_map(|score| score.ess).collect();
         let n_sufficient = ess.iter().filter(|ess| **ess >= SUFFICIENT_ESS).count();
         let quantities = SCORED.iter().filter_map(|speed| {
@@ -104,7 +105,7 @@ impl QuantitySummary {
             scored.iter().filter(holds).count() as f64 / n as f64
         };
         let median = |value: fn(&ScoredQuantity) -> f64| {
-            quantile_of_sorted(&sorted(scored.iter().map(|quantity| value(quantity))), 0.5)
+            median(scored.iter().map(|quantity| value(quantity)))
         };
         Some(Self {
             name: first.estimate.name,
@@ -120,12 +121,6 @@ impl QuantitySummary {
             mean_crps: scored.iter().map(|quantity| quantity.crps).sum::<f64>() / n as f64,
         })
     }
-}
-
-fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values
 }
 
 #[cfg(test)]

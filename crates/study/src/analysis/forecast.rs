@@ -6,11 +6,10 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use impactlab_core::collision::{PrincipalDirectionOfForce, Pulse, PulseError, PulseShape};
-use impactlab_core::numerics::random_stream;
-use impactlab_core::numerics::{quantile_of_sorted, wrap_angle_rad};
+use impactlab_core::numerics::{median, quantile_of_sorted, random_stream, wrap_angle_rad};
 use impactlab_core::uncertainty::{
-    CURVE_INTERVAL_S, CurveBands, CurveComponent, CurveMixture, CurveQuantities, ForceCurve,
-    MixtureError, NormalMixture,
+    CURVE_INTERVAL_S, CurveBands, CurveComponent, CurveMixture, ForceCurve, MixtureError,
+    NormalMixture,
 };
 use impactlab_core::units::{Estimate, Interval};
 use impactlab_networks::force::metrics::BAND_LEVELS;
@@ -148,7 +147,7 @@ fn modes(mixture: &CurveMixture, seed: u64) -> Result<Vec<Mode>, MixtureError> {
         Ok(Mode {
             weight: component.weight,
             impulse_n_s: mean.impulse_n_s(),
-            peak_n: CurveQuantities::median(&drawn.peak_n).unwrap_or(0.0),
+            peak_n: median(drawn.peak_n).unwrap_or(0.0),
             duration_s: mean.duration_s.max(0.0),
         })
     };

@@ -1,7 +1,7 @@
 //! What any force model, network, regression or baseline, predicts for a case.
 
-use impactlab_core::numerics::random_stream;
-use impactlab_core::uncertainty::{CurveMixture, CurveQuantities, ForceCurve};
+use impactlab_core::numerics::{median, random_stream};
+use impactlab_core::uncertainty::{CurveMixture, ForceCurve};
 
 /// Number of curves that are drawn for the median of their peaks.
 const N_PEAKS: usize = 500;
@@ -36,7 +36,7 @@ impl CurvePrediction {
         let mut prediction = Self::from_curve(likely.mean());
         prediction.curve.duration_s = likely.duration_s().quantile(0.5);
         let (_, drawn) = likely.sample_quantities(N_PEAKS, &mut random_stream(0, "peaks", 0));
-        prediction.peak_n = CurveQuantities::median(&drawn.peak_n).unwrap_or(prediction.peak_n);
+        prediction.peak_n = median(drawn.peak_n).unwrap_or(prediction.peak_n);
         prediction.mixture = Some(mixture);
         prediction
     }

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use crate::force::ForceCase;
 use crate::force::physics::CentreCurve;
 use crate::nn::{Expected, NnError, check_number, check_numbers};
-use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::numerics::median;
 use impactlab_core::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
 
 /// Unit of the duration among the values of a curve, s.
@@ -139,7 +139,8 @@ impl ResidualProfiles {
         let n = rows.len();
         let data = DMatrix::from_fn(n, N_VALUES, |i, j| rows[i][j]);
         // The median: one odd case in ten must not move the other nine.
-        let mut mean: Vec<f64> = data.column_iter().map(|column| median(column.iter())).collect();
+        let middle = |idx: usize| median(rows.iter().map(|row| row[idx])).unwrap_or(0.0);
+        let mut mean: Vec<f64> = (0..N_VALUES).map(middle).collect();
         if !shifts_duration {
             mean[N_VALUES - 1] = 0.0;
         }
@@ -250,12 +251,6 @@ fn residual(case: &ForceCase, centre: &CentreCurve) -> Vec<f64> {
     });
     let duration = (case.curve.duration_s - centre.curve.duration_s) / scale_s;
     forces.chain([duration]).map(|r| r.clamp(-LARGEST_RESIDUAL, LARGEST_RESIDUAL)).collect()
-}
-
-fn median<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
-    let mut values: Vec<f64> = values.copied().collect();
-    values.sort_by(f64::total_cmp);
-    quantile_of_sorted(&values, 0.5).unwrap_or(0.0)
 }
 
 /// T, the duration of a triangular pulse with the impulse and the peak of the centre, s.

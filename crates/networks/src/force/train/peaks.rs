@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use crate::force::train::calibration::{CalibrationCase, Tried, VarianceFactors};
 use crate::force::train::held_shares::Held;
-use impactlab_core::numerics::random_stream;
-use impactlab_core::uncertainty::{CurveQuantities, PeakFactors};
+use impactlab_core::numerics::{median, random_stream};
+use impactlab_core::uncertainty::PeakFactors;
 
 /// Factors on the deviation of peaks that are tried.
 const PEAK_SPREAD: Tried = Tried { n: 31, range: [0.25, 8.0] };
@@ -47,7 +47,7 @@ pub(super) fn peak_factors(
 ) -> PeakFactors {
     let of_case = |(idx, case)| LogPeaks::new(case, factors, idx, seed);
     let peaks: Vec<LogPeaks> = cases.par_iter().enumerate().map(of_case).collect();
-    let middle = |values: &[f64]| CurveQuantities::median(values).unwrap_or(0.0);
+    let middle = |values: &[f64]| median(values.iter().copied()).unwrap_or(0.0);
     let mut best = (f64::INFINITY, PeakFactors::default());
     for spread in PEAK_SPREAD.factors() {
         let above: Vec<Vec<f64>> = peaks.iter().map(|case| case.above(spread)).collect();
