@@ -7,7 +7,7 @@ use crate::pair::{CourseShare, PairDraw, PairForecast};
 use impactlab_core::compare::PairCase;
 use impactlab_core::data::{Channel, SeriesError, TimeSeries};
 use impactlab_core::numerics::{
-    Summary, interpolate, is_half_turn, is_quarter_turn, wrap_angle_rad,
+    Summary, interpolate, is_half_turn, is_quarter_turn, median, wrap_angle_rad,
 };
 use impactlab_core::vehicle::OUTPUT_INTERVAL_S;
 
@@ -135,9 +135,8 @@ pub fn evaluate_pair(
         Ok(vehicle_score(&record, vehicle, first_s, (forecast, &centre)))
     };
     let end_s = case.motions[0].time_s().last().copied().unwrap_or(0.0);
-    let median = |value: &dyn Fn(&PairDraw) -> f64| {
-        median(forecast.draws.iter().map(value).collect()).unwrap_or(0.0)
-    };
+    let median =
+        |value: &dyn Fn(&PairDraw) -> f64| median(forecast.draws.iter().map(value)).unwrap_or(0.0);
     Ok(EvaluatedPair {
         case: case.name.clone(),
         kind: case.attributes.kind.clone(),
@@ -155,12 +154,6 @@ pub fn evaluate_pair(
         },
         n_draws: forecast.draws.len(),
     })
-}
-
-/// The middle one; the upper of two. `None` without any.
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
 
 /// The recorded motion of a vehicle.
@@ -250,14 +243,14 @@ fn vehicle_score(
 impl Compared {
     /// Median over several of the forecast over the recorded number; `None` without a recorded one.
     pub fn median_ratio(all: impl IntoIterator<Item = Self>) -> Option<f64> {
-        median(all.into_iter().filter_map(Self::ratio).collect())
+        median(all.into_iter().filter_map(Self::ratio))
     }
 
     /// Median over several of the size of the relative error of the forecast; `None` without a recorded
     /// number.
     pub fn median_error(all: impl IntoIterator<Item = Self>) -> Option<f64> {
         let errors = all.into_iter().filter_map(Self::ratio).map(|ratio| (ratio - 1.0).abs());
-        median(errors.collect())
+        median(errors)
     }
 
     /// The forecast over the recorded number.
@@ -320,5 +313,21 @@ impl PairSummary {
             contact_ratio: ratio(|case| case.contact_s),
             impulse_ratio: ratio(|case| case.impulse_n_s),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two records the larger ratio was the median, so that errors to both sides read as one.
+    #[test]
+    fn of_two_records_the_median_lies_between() {
+        let all = [(40.0, 50.0), (60.0, 50.0)]
+            .map(|(forecast, recorded)| Compared { forecast, recorded: Some(recorded) });
+        let unknown = Compared { forecast: 9.0, recorded: None };
+        let ratio = Compared::median_ratio(all.into_iter().chain([unknown]));
+        assert!(ratio.is_some_and(|ratio| (ratio - 1.0).abs() < 1e-12), "{ratio:?}");
+        assert_eq!(Compared::median_error([unknown]), None);
     }
 }

@@ -5,10 +5,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::pair::PairForecast;
-use crate::pair::evaluate::median;
 use impactlab_core::compare::{PairCase, largest_yaw_change_rad};
 use impactlab_core::data::SeriesError;
-use impactlab_core::numerics::is_quarter_turn;
+use impactlab_core::numerics::{is_quarter_turn, median};
 
 /// The same of a vehicle without and with stability control.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -87,7 +86,7 @@ impl TwinOutcome {
         let turns = forecast.draws.iter().map(|draw| draw.largest_turn_rad(0));
         Ok(Self {
             recorded_turn_rad: largest_yaw_change_rad(&case.motions[0])?,
-            forecast_turn_rad: median(turns.collect()).unwrap_or(0.0),
+            forecast_turn_rad: median(turns).unwrap_or(0.0),
             quarter_turn_probability: forecast
                 .share(|draw| is_quarter_turn(draw.largest_turn_rad(0))),
         })
