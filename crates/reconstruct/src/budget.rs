@@ -8,8 +8,7 @@
 //! measured with an error, and all particles are weighted by how well they agree with it. No motion
 //! is simulated again.
 
-use impactlab_core::numerics::quantile_of_weighted;
-use impactlab_core::numerics::random_stream;
+use impactlab_core::numerics::{median, quantile_of_weighted, random_stream};
 use rand::RngExt;
 use rand_distr::StandardNormal;
 
@@ -67,15 +66,13 @@ impl Narrowing {
         let mean = |value: &dyn Fn(&Spread) -> f64| {
             then.iter().map(value).sum::<f64>() / then.len() as f64
         };
-        let mut sizes: Vec<f64> = then.iter().map(|spread| spread.effective).collect();
-        sizes.sort_by(f64::total_cmp);
         Some(Self {
             width_90_now: now.width_90,
             // What a measurement adds is never less than nothing: the rest is the error of the draws.
             width_90_then: mean(&|spread| spread.width_90).min(now.width_90),
             std_now: now.variance.sqrt(),
             std_then: mean(&|spread| spread.variance).min(now.variance).sqrt(),
-            ess: sizes.get(sizes.len() / 2)? * (ess / n as f64).min(1.0),
+            ess: median(then.iter().map(|spread| spread.effective))? * (ess / n as f64).min(1.0),
         })
     }
 

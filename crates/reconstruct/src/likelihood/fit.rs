@@ -5,7 +5,7 @@ use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 use crate::likelihood::{ComparedBy, EvidenceTerm};
-use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::numerics::{median, wrap_angle_rad};
 
 /// One item of the evidence against the whole posterior.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
@@ -50,12 +50,15 @@ impl EvidenceFit {
                 let all: Vec<&EvidenceTerm> =
                     of_motions.iter().filter_map(|terms| terms.get(idx)).collect();
                 let tail = |term: &&EvidenceTerm| survival(term.distance);
+                let middle = |value: &dyn Fn(&EvidenceTerm) -> f64| {
+                    median(all.iter().copied().map(value)).unwrap_or(f64::NAN)
+                };
                 let p = all.iter().map(tail).sum::<f64>() / all.len() as f64;
                 Self {
                     evidence: item.name.clone(),
                     unit: item.unit,
-                    expected: median(all.iter().map(|term| around(term.expected, item)).collect()),
-                    found: median(all.iter().map(|term| term.found).collect()),
+                    expected: middle(&|term| around(term.expected, item)),
+                    found: middle(&|term| term.found),
                     compared_by: item.compared_by,
                     p: p.clamp(0.0, 1.0),
                 }
@@ -81,11 +84,6 @@ fn survival(distance: f64) -> f64 {
     ChiSquared::new(1.0).map_or(0.0, |chi| chi.sf(distance.min(1e6)))
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,5 +103,9 @@ mod tests {
         assert!((fit[0].p - 0.4795).abs() < 1e-3 && !fit[0].is_unexplained(), "{fit:?}");
         assert!(fit[1].p < 1e-4 && fit[1].is_unexplained(), "{fit:?}");
         assert!(EvidenceFit::from_particles(&[]).is_empty());
+        // Of two motions the median lies between; the larger was told.
+        let off = |expected| vec![EvidenceTerm { expected, ..term("rest", 0.5) }];
+        let fit = EvidenceFit::from_particles(&[off(3.0), off(1.0)]);
+        assert_eq!((fit[0].expected, fit[0].found), (2.0, 2.0));
     }
 }
