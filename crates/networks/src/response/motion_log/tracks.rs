@@ -3,7 +3,7 @@
 use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead::NelderMead;
 
-use impactlab_core::numerics::{MeasuredTrack, TrackPoint, TrackSample};
+use impactlab_core::numerics::{MeasuredTrack, SIGMA_PER_MAD, TrackPoint, TrackSample, median};
 
 /// Spectral density of p⃛ to start with, away from contact and during it, (m/s³)²·s or (rad/s³)²·s:
 /// tires change the acceleration by some 5 m/s² within 0.2 s, an impact by 30 m/s² within 0.05 s.
@@ -14,8 +14,6 @@ const PRIOR_STD: [f64; 2] = [0.5, 1.5];
 const LEAST_STD: f64 = 1e-4;
 /// Third differences of white noise have twenty times its variance.
 const THIRD_DIFFERENCE: f64 = 20.0;
-/// Median of the size of a standard normal number.
-const NORMAL_MEDIAN: f64 = 0.6745;
 const MAX_ITERATIONS: u64 = 150;
 
 /// Noise and liveliness of coordinates.
@@ -72,9 +70,8 @@ impl Tracks {
                 let third = |v: &[f64]| (v[3] - 3.0 * v[2] + 3.0 * v[1] - v[0]).abs();
                 sizes.extend(values.windows(4).map(third));
             }
-            sizes.sort_by(f64::total_cmp);
-            let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
-            (median / NORMAL_MEDIAN / THIRD_DIFFERENCE.sqrt()).max(LEAST_STD)
+            let std = SIGMA_PER_MAD * median(sizes).unwrap_or(0.0) / THIRD_DIFFERENCE.sqrt();
+            std.max(LEAST_STD)
         };
         TrackScales { sample_std: [std(0), std(1)], density: START_DENSITY }
     }
@@ -174,5 +171,21 @@ impl CostFunction for TrackProblem<'_> {
         let prior = logs.iter().enumerate().map(|(i, log)| (log / PRIOR_STD[i / 2]).powi(2));
         let cost = 0.5 * prior.sum::<f64>() - fit;
         Ok(if cost.is_finite() { cost } else { f64::MAX })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Third differences of 1 and 3 cm: the noise to start with was by the larger one.
+    #[test]
+    fn the_noise_of_few_samples_is_by_the_median_of_their_differences() {
+        let times_s = [0.0, 0.1, 0.2, 0.3, 0.4];
+        let samples = Tracks::samples_of(&times_s, &[0.0, 0.0, 0.0, 0.01, 0.0], None);
+        let tracks = Tracks { samples: vec![samples], prior_std: [1.0; 3] };
+        let [std, of_velocities] = tracks.start().sample_std;
+        assert!((std - 1.4826 * 0.02 / 20.0_f64.sqrt()).abs() < 1e-9, "{std}");
+        assert_eq!(of_velocities, LEAST_STD);
     }
 }
