@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab_core::numerics::NORMAL_QUANTILE_95;
+use impactlab_core::numerics::{NORMAL_QUANTILE_95, median};
 use impactlab_networks::force::{ForceCase, ForceScenario};
 
 type Feature = fn(&ForceScenario) -> f64;
@@ -41,7 +41,7 @@ fn errors(train: &[&ForceCase], test: &[&ForceCase]) -> Option<Vec<Errors>> {
     let duration = train.iter().map(|case| case.curve.duration_s).sum::<f64>() / train.len() as f64;
     let size = |[x, y]: [f64; 2]| x.hypot(y);
     let shape = |case: &&&ForceCase| case.peak_n * case.curve.duration_s / size(case.impulse_n_s);
-    let shape = median(clean().map(|case| shape(&case)).collect());
+    let shape = median(clean().map(|case| shape(&case))).unwrap_or(f64::NAN);
     let of = |case: &&ForceCase| {
         let impact = case.scenario.likely_impact()?;
         let (p, q) = (case.impulse_n_s, impact.solve().ok()?.impulse_world_n_s);
@@ -55,11 +55,6 @@ fn errors(train: &[&ForceCase], test: &[&ForceCase]) -> Option<Vec<Errors>> {
     };
     println!("{} left out; F_max Δt / |P| of the others {shape:.3}", test.len());
     test.iter().map(of).collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -19,6 +19,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use impactlab_core::data::Outcome;
+use impactlab_core::numerics::median;
 use impactlab_networks::learning::{
     TEST_SHARE, TrainSettings, TrainingReport, TrainingSet, folds, split,
 };
@@ -110,14 +111,11 @@ impl Scores {
     }
 
     /// Prints the row of a variant.
-    fn print(mut self, name: &str, pretraining_s: Option<f64>) {
-        self.errors_m.sort_by(f64::total_cmp);
+    fn print(self, name: &str, pretraining_s: Option<f64>) {
         let n = self.errors_m.len();
         let mean = self.errors_m.iter().sum::<f64>() / n.max(1) as f64;
-        let median = (self.errors_m.get(n / 2).unwrap_or(&f64::NAN)
-            + self.errors_m.get(n.saturating_sub(1) / 2).unwrap_or(&f64::NAN))
-            / 2.0;
-        let largest = self.errors_m.last().unwrap_or(&f64::NAN);
+        let median = median(self.errors_m.iter().copied()).unwrap_or(f64::NAN);
+        let largest = self.errors_m.iter().copied().fold(f64::NAN, f64::max);
         let share = |inside: usize| match self.n_positions {
             0 => "–".to_owned(),
             n => format!("{:.0}", 100.0 * inside as f64 / n as f64),

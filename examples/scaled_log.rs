@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use impactlab_core::collision::{Pulse, PulseShape};
 use impactlab_core::data::{Channel, Existing, ForceAxes, TimeSeries, write_series_csv};
+use impactlab_core::numerics::median;
 use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
 };
@@ -74,11 +75,9 @@ struct Row {
 
 impl Row {
     fn print(&self) {
-        let mut sorted = self.errors_m.clone();
-        sorted.sort_by(f64::total_cmp);
-        let mean = sorted.iter().sum::<f64>() / sorted.len().max(1) as f64;
-        let at = |share: f64| sorted.get((sorted.len() as f64 * share) as usize);
-        let [median, largest] = [at(0.5), sorted.last()].map(|value| value.unwrap_or(&f64::NAN));
+        let mean = self.errors_m.iter().sum::<f64>() / self.errors_m.len().max(1) as f64;
+        let median = median(self.errors_m.iter().copied()).unwrap_or(f64::NAN);
+        let largest = self.errors_m.iter().copied().fold(f64::NAN, f64::max);
         println!("| {} | {mean:.3} | {median:.3} | {largest:.2} |", self.name);
     }
 }

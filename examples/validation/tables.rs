@@ -7,7 +7,7 @@ use std::path::Path;
 
 use impactlab_core::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, RestitutionForm};
 use impactlab_core::data::{Dataset, list_folder};
-use impactlab_core::numerics::{Summary, quantile_of_sorted, wilson_interval};
+use impactlab_core::numerics::{Summary, median, wilson_interval};
 use impactlab_core::vehicle::Integrator;
 use impactlab_networks::force::{ContactLaw, ForceCase};
 use impactlab_networks::learning::{TEST_SHARE, split};
@@ -485,9 +485,7 @@ fn share(count: usize, n: usize) -> String {
 /// Median size of the error, bias, width of 90 % and CRPS.
 fn errors(scored: &[&Scored], unit: f64) -> Result<[String; 4], Box<dyn Error>> {
     let median = |value: fn(&Scored) -> f64| -> Result<f64, Box<dyn Error>> {
-        let mut values: Vec<f64> = scored.iter().map(|of| unit * value(of)).collect();
-        values.sort_by(f64::total_cmp);
-        Ok(quantile_of_sorted(&values, 0.5).ok_or("no cases")?)
+        Ok(median(scored.iter().map(|of| unit * value(of))).ok_or("no cases")?)
     };
     let bias = median(|of| of.median - of.truth)?;
     let bias = format!("{}{:.1}", if bias < 0.0 { "−" } else { "+" }, bias.abs());
