@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use impactlab_core::numerics::TruncatedNormal;
+use impactlab_core::numerics::{TruncatedNormal, index_of_share};
 
 /// A varied input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -214,17 +214,11 @@ pub(crate) fn listed(values: &[Value], idx: usize) -> InputValue {
 
 /// The place in a list that a share of the probability falls upon.
 fn share_idx(share: f64, n: usize, weights: &[f64]) -> usize {
-    let last = n.saturating_sub(1);
     if weights.is_empty() {
-        return ((share * n as f64) as usize).min(last);
+        return ((share * n as f64) as usize).min(n.saturating_sub(1));
     }
     let total: f64 = weights.iter().sum();
-    let mut sum = 0.0;
-    let found = weights.iter().position(|weight| {
-        sum += weight;
-        share * total < sum
-    });
-    found.unwrap_or(last).min(last)
+    index_of_share(weights.iter().copied(), share * total)
 }
 
 fn list_fault(values: &[Value], weights: &[f64]) -> Option<String> {

@@ -191,9 +191,49 @@ pub fn quantile_of_weighted(values: &[f64], weights: &[f64], probability: f64) -
     Some(*last.0)
 }
 
+/// The place in a list of weights that a share of their sum falls upon: the first whose sum up to and with it is
+/// larger. One without a weight is never taken.
+///
+/// - `weights`: 0 or more each;
+/// - `share`: 0 to their sum. One that rounding leaves beyond it falls upon the last that has a weight.
+/// - returns 0 if none has a weight.
+///
+/// ```
+/// # use impactlab_core::numerics::index_of_share;
+/// assert_eq!([0.0, 0.2, 0.9].map(|share| index_of_share([0.2, 0.0, 0.8], share)), [0, 2, 2]);
+/// ```
+pub fn index_of_share(weights: impl IntoIterator<Item = f64>, share: f64) -> usize {
+    let (mut sum, mut last) = (0.0, 0);
+    for (idx, weight) in weights.into_iter().enumerate() {
+        sum += weight;
+        if weight > 0.0 {
+            last = idx;
+        }
+        if share < sum {
+            break;
+        }
+    }
+    last
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A share that rounding left beyond the sum fell upon the last of all, though nothing lay there.
+    #[test]
+    fn a_share_falls_upon_places_by_their_weights_and_never_upon_one_without() {
+        let weights = [0.0, 1.0, 0.0, 3.0, 0.0];
+        for (share, expected) in [(0.0, 1), (0.99, 1), (1.0, 3), (3.99, 3), (4.0, 3), (9.0, 3)] {
+            assert_eq!(index_of_share(weights, share), expected, "{share}");
+        }
+        assert_eq!(index_of_share([], 0.5), 0);
+        let tenths = [0.1; 10];
+        let sum: f64 = tenths.iter().sum();
+        let below = 1.0 - f64::EPSILON / 2.0;
+        assert!(below >= sum, "{sum}");
+        assert_eq!(index_of_share(tenths.into_iter().chain([0.0]), below), 9);
+    }
 
     #[test]
     fn equal_weights_give_the_quantiles_of_the_values_and_a_weight_of_two_counts_twice() {

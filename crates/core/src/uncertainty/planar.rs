@@ -18,7 +18,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-use crate::numerics::Packed;
+use crate::numerics::{Packed, index_of_share};
 use crate::uncertainty::PlanarKernel;
 
 /// Number of draws from which the level of a density is estimated; the standard error of the level
@@ -94,13 +94,9 @@ impl PlanarMixture {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let draw = |_| {
             let share: f64 = rng.random();
-            let mut sum = 0.0;
-            let found = self.parts.iter().find(|part| {
-                sum += part.weight;
-                share < sum
-            });
+            let place = index_of_share(self.parts.iter().map(|part| part.weight), share);
             let [a, b] = [(); 2].map(|()| rng.sample::<f64, _>(StandardNormal));
-            found.or(self.parts.last()).map_or([f64::NAN; 2], |part| {
+            self.parts.get(place).map_or([f64::NAN; 2], |part| {
                 let [xx, xy, yy] = part.covariance;
                 let first = xx.sqrt();
                 let across = xy / first;

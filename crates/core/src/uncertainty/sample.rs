@@ -8,7 +8,7 @@ use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use crate::numerics::{latin_normals, latin_uniforms, quantile_of_sorted};
+use crate::numerics::{index_of_share, latin_normals, latin_uniforms, quantile_of_sorted};
 use crate::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
 
 /// Impulse, peak and duration of drawn curves, one entry for each draw.
@@ -52,7 +52,8 @@ impl CurveMixture {
             .map(|component| component.variance.iter().map(|d| d.sqrt()).collect())
             .collect();
         for (draw, share) in components.into_iter().enumerate() {
-            let k = self.component_at(share);
+            let weights = self.components().iter().map(|component| component.weight);
+            let k = index_of_share(weights, share);
             let (component, own) = (&self.components()[k], &deviations[k]);
             let mut values = component.mean.clone();
             for (column, z) in component.factors.column_iter().zip(&factors) {
@@ -99,18 +100,6 @@ impl CurveMixture {
             quantities.duration_s.push(curve.duration_s);
         }
         (drawn.into_iter().map(|(_, curve)| curve).collect(), quantities)
-    }
-
-    /// Index of the component at a share of the weights, 0 to 1.
-    fn component_at(&self, share: f64) -> usize {
-        let mut left = share;
-        for (k, component) in self.components().iter().enumerate() {
-            left -= component.weight;
-            if left < 0.0 {
-                return k;
-            }
-        }
-        self.components().len() - 1
     }
 }
 

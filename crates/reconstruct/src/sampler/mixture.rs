@@ -19,6 +19,8 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use impactlab_core::numerics::index_of_share;
+
 /// Largest number of parts.
 const MAX_PARTS: usize = 6;
 
@@ -237,14 +239,8 @@ impl Mixture {
     fn any_part(&self, rng: &mut impl Rng) -> &Part {
         let ln_weights: Vec<f64> = self.parts.iter().map(|part| part.ln_weight).collect();
         let total = ln_sum_exp(&ln_weights);
-        let mut left: f64 = rng.random();
-        for (part, ln_weight) in self.parts.iter().zip(&ln_weights) {
-            left -= (ln_weight - total).exp();
-            if left < 0.0 {
-                return part;
-            }
-        }
-        &self.parts[self.parts.len() - 1]
+        let weights = ln_weights.iter().map(|ln_weight| (ln_weight - total).exp());
+        &self.parts[index_of_share(weights, rng.random())]
     }
 
     fn mean_ln_density(&self, particles: Weighted<'_>) -> f64 {

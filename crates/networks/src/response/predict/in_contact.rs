@@ -16,9 +16,9 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
-use crate::response::predict::predictor::{drawn, normal};
+use crate::response::predict::predictor::normal;
 use crate::response::{Correction, N_LATENTS, N_RESIDUAL, Predictor, STEP_S};
-use impactlab_core::numerics::random_stream;
+use impactlab_core::numerics::{index_of_share, random_stream};
 use impactlab_core::vehicle::{VehicleInput, VehicleState};
 
 /// The correction along one drawn motion.
@@ -58,7 +58,7 @@ impl Predictor {
     pub fn coupled_draw(&self, seed: u64, role: &str, idx: usize) -> CoupledDraw<'_> {
         let mut rng = random_stream(seed, &format!("coupled motions, {role}"), idx as u64);
         let n = self.n_components();
-        let component = drawn(&vec![1.0 / n as f64; n], rng.random());
+        let component = index_of_share(std::iter::repeat_n(1.0 / n as f64, n), rng.random());
         let shares = self.latents.component_shares(component, n);
         let width = self.latents.width(rng.random());
         let latents = std::array::from_fn(|m| {

@@ -16,7 +16,7 @@ use crate::response::{
     Applicability, CarStrengths, LatentScales, MotionDomain, N_EFFECTS, N_LATENTS,
     StrengthPopulation,
 };
-use impactlab_core::numerics::{MAX_LANES, random_stream};
+use impactlab_core::numerics::{MAX_LANES, index_of_share, random_stream};
 use impactlab_core::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// A model for one vehicle.
@@ -227,7 +227,7 @@ impl Predictor {
     /// - `weights`: of the components;
     /// - `rng`: of the motion.
     pub(super) fn drawn_motion(&self, weights: &[f64], mut rng: ChaCha8Rng) -> MotionDraw {
-        let component = drawn(weights, rng.random());
+        let component = index_of_share(weights.iter().copied(), rng.random());
         self.drawn_in(component, rng)
     }
 
@@ -277,16 +277,6 @@ pub(super) fn central_of(components: &[FollowedMotion]) -> Vec<VehicleState<f64>
 
 pub(super) fn normal(rng: &mut ChaCha8Rng) -> f64 {
     rng.sample(StandardNormal)
-}
-
-/// The component that a number from 0 to 1 falls upon.
-pub(super) fn drawn(weights: &[f64], share: f64) -> usize {
-    let mut sum = 0.0;
-    let found = weights.iter().position(|weight| {
-        sum += weight;
-        share < sum
-    });
-    found.unwrap_or(weights.len().saturating_sub(1))
 }
 
 /// `Σ w x`; the weights sum to one.

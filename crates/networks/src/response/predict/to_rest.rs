@@ -15,9 +15,9 @@ use rayon::prelude::*;
 
 use crate::response::predict::abreast::{FollowedMotion, MotionDraw};
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
-use crate::response::predict::predictor::{central_of, drawn};
+use crate::response::predict::predictor::central_of;
 use crate::response::{N_LATENTS, Predictor, STEP_S};
-use impactlab_core::numerics::{MAX_LANES, random_stream};
+use impactlab_core::numerics::{MAX_LANES, index_of_share, random_stream};
 use impactlab_core::vehicle::{RestWatch, VehicleInput, VehicleParameters, VehicleState};
 
 /// Standard deviations of the logarithms of rolling resistance and air drag of a car on the road, of
@@ -123,7 +123,8 @@ impl Predictor {
                 (0..fitted.n_components()).map(in_component).unzip();
             let Components { central, weights, beside } =
                 self.settled_components(&fitted, initial, inputs, beside);
-            let chosen = beside.into_iter().zip(factors).nth(drawn(&weights, share));
+            let component = index_of_share(weights, share);
+            let chosen = beside.into_iter().zip(factors).nth(component);
             return SettledMotions { central, draws: chosen.map(&go_on).into_iter().collect() };
         }
         let Components { central, weights, .. } =
