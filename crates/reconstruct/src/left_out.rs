@@ -12,7 +12,7 @@ use crate::sampler::{
     LeftOutParticles, Particles, SamplerReport, SamplerSettings, Target, sample_from,
 };
 use crate::{EvidenceTerm, Posterior, QuantityEstimate, ReconstructionTarget};
-use impactlab_core::numerics::{normal_cdf, wrap_angle_rad};
+use impactlab_core::numerics::{normal_cdf, unwrapped_rad};
 
 /// Independent draws below which nothing is said.
 const LEAST_ESS: f64 = 30.0;
@@ -214,27 +214,24 @@ fn tail_probability(particles: &[&[EvidenceTerm]]) -> Option<f64> {
 fn standard_differences(terms: &[&EvidenceTerm]) -> Vec<f64> {
     let differences: Vec<f64> = terms.iter().map(|term| term.found - term.expected).collect();
     let is_angle = terms.first().is_some_and(|term| term.unit == "rad");
-    let (sin, cos) = differences.iter().fold((0.0, 0.0), |(sin, cos), difference| {
-        (sin + difference.sin(), cos + difference.cos())
-    });
-    let middle = sin.atan2(cos);
-    let standard = |(difference, term): (&f64, &&EvidenceTerm)| {
-        let about_middle = match is_angle {
-            true => middle + wrap_angle_rad(difference - middle),
-            false => *difference,
-        };
+    let about_middle = match is_angle {
+        true => unwrapped_rad(&differences),
+        false => differences.clone(),
+    };
+    let standard = |((difference, about_middle), term): ((&f64, f64), &&EvidenceTerm)| {
         match difference.abs() {
             0.0 => 0.0,
             size => about_middle / size * term.distance.sqrt(),
         }
     };
-    differences.iter().zip(terms).map(standard).collect()
+    differences.iter().zip(about_middle).zip(terms).map(standard).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::ComparedBy;
+    use impactlab_core::numerics::wrap_angle_rad;
     use std::f64::consts::PI;
 
     fn term(found: f64, expected: f64, sigma: f64) -> EvidenceTerm {

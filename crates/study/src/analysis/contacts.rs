@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::analysis::FEWEST_DRAWS;
 use impactlab_core::collision::contact::{ContactPhase, PhaseOfVehicle};
-use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::numerics::unwrapped_rad;
 use impactlab_core::units::Estimate;
 use impactlab_networks::pair::{PairDraw, PairForecast};
 
@@ -246,10 +246,8 @@ impl PhaseForecast {
 /// The spread of directions about their mean direction, rad; `None` without any. Its median lies within
 /// −π and π.
 fn direction(angles_rad: &[f64]) -> Option<Estimate> {
-    let sum = |part: fn(f64) -> f64| angles_rad.iter().map(|angle| part(*angle)).sum::<f64>();
-    let mean_rad = sum(f64::sin).atan2(sum(f64::cos));
-    let around = angles_rad.iter().map(|angle| mean_rad + wrap_angle_rad(angle - mean_rad));
-    let estimate = (!angles_rad.is_empty()).then(|| Estimate::from_draws(around.collect()))?;
+    let drawn = || Estimate::from_draws(unwrapped_rad(angles_rad));
+    let estimate = (!angles_rad.is_empty()).then(drawn)?;
     let turns = ((estimate.median + PI) / (2.0 * PI)).floor() * 2.0 * PI;
     Some(estimate.mapped(|angle| angle - turns))
 }
