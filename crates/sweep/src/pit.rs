@@ -7,6 +7,7 @@
 use impactlab_core::collision::{ContactLocation, Scenario};
 use impactlab_core::numerics::{latin_normals, random_stream};
 use impactlab_core::ranges::{CONTACT_OFFSET, ROAD_FRICTION, Range, SPEED, YAW_RATE};
+use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{
     Braking, Countersteer, DEFAULT_BRAKE_RISE_S, Ending, PitDriver, PitEnd, StabilityControl,
     TurnSide, VehicleParameters, built_in_vehicle,
@@ -289,16 +290,16 @@ fn turning_in(side: f64) -> Ending {
 /// Velocities and heading of both vehicles, in axes along the lane.
 fn set_motion(scenario: &mut Scenario, side: f64, number: &impl Fn(PitInput) -> Option<f64>) {
     let heading_rad = scenario.struck.heading_rad;
-    let (sin, cos) = heading_rad.sin_cos();
-    let in_lane = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
-    let of_struck = in_lane([scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s]);
-    let of_striking = in_lane([scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s]);
+    let lane = Heading::new(heading_rad);
+    let of_struck =
+        lane.body_from_world([scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s]);
+    let of_striking =
+        lane.body_from_world([scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s]);
     let along = number(PitInput::TargetSpeed).unwrap_or(of_struck[0]);
     let faster = number(PitInput::Faster).unwrap_or(of_striking[0] - of_struck[0]);
     let across = number(PitInput::Closing).map_or(of_striking[1], |closing| side * closing);
-    let in_world = |[x, y]: [f64; 2]| [x * cos - y * sin, x * sin + y * cos];
-    let struck = in_world([along, of_struck[1]]);
-    let striking = in_world([along + faster, across]);
+    let struck = lane.world_from_body([along, of_struck[1]]);
+    let striking = lane.world_from_body([along + faster, across]);
     [scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s] = struck;
     [scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s] = striking;
     if let Some(angle_rad) = number(PitInput::Angle) {

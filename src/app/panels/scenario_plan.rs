@@ -8,6 +8,7 @@ use impactlab_core::collision::{ContactLocation, Pose, Scenario, ScenarioVehicle
 use impactlab_core::numerics::nearest_multiple;
 use impactlab_core::ranges::{HEADING, POSITION, SPEED};
 use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::frames::body_from_world;
 use impactlab_document::figure::{
     Axis, Figure, FigureElement, LineStyle, Role, impact_figure, vehicle_outline,
 };
@@ -135,10 +136,10 @@ fn move_striking(before: &Scenario, [dx, dy]: [f64; 2], location: &mut ContactLo
             ContactLocation::Side { side, offset_m: start },
             ContactLocation::Side { offset_m, .. },
         ) => {
-            let (sin, cos) = before.struck.heading_rad.sin_cos();
+            let [ahead, left] = body_from_world(before.struck.heading_rad, [dx, dy]);
             let along = match side {
-                Side::Left | Side::Right => dx * cos + dy * sin,
-                Side::Front | Side::Rear => dy * cos - dx * sin,
+                Side::Left | Side::Right => ahead,
+                Side::Front | Side::Rear => left,
             };
             let half = match side {
                 Side::Left | Side::Right => before.struck.length_m / 2.0,

@@ -20,6 +20,7 @@ use impactlab_core::numerics::random_stream;
 use impactlab_core::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
 use impactlab_core::uncertainty::ForceCurve;
 use impactlab_core::units::Estimate;
+use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, RoadDraws,
     Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
@@ -362,9 +363,9 @@ fn by_sheet(
 /// Rotates a curve from axes along the struck vehicle's initial heading into world axes.
 pub(crate) fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     let mut history = curve.to_history();
-    let (sin, cos) = heading_rad.sin_cos();
+    let heading = Heading::new(heading_rad);
     for (fx, fy) in history.fx_n.iter_mut().zip(&mut history.fy_n) {
-        (*fx, *fy) = (cos * *fx - sin * *fy, sin * *fx + cos * *fy);
+        [*fx, *fy] = heading.world_from_body([*fx, *fy]);
     }
     history.axes = ForceAxes::World;
     history

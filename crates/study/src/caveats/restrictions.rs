@@ -19,6 +19,7 @@ use impactlab_core::data::{
 };
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
+use impactlab_core::vehicle::frames::body_from_world;
 use impactlab_core::vehicle::{
     ContactPoint, REST_SPEED_M_S, RoadSlope, USUAL_SLOPE, VehicleParameters,
 };
@@ -49,8 +50,8 @@ pub(crate) fn backwards(scenario: &Scenario) -> Vec<Caveat> {
         (&scenario.striking, "the striking vehicle", "das stoßende Fahrzeug"),
     ];
     let caveat = |(vehicle, en, de): (&ScenarioVehicle, &'static str, &'static str)| {
-        let (sin, cos) = vehicle.heading_rad.sin_cos();
-        let ahead_m_s = vehicle.vx_world_m_s * cos + vehicle.vy_world_m_s * sin;
+        let velocity_m_s = [vehicle.vx_world_m_s, vehicle.vy_world_m_s];
+        let [ahead_m_s, _] = body_from_world(vehicle.heading_rad, velocity_m_s);
         backwards_caveat(Phrase::new(en, de), ahead_m_s)
     };
     vehicles.into_iter().filter_map(caveat).collect()
@@ -156,12 +157,10 @@ pub(crate) fn pulling_caveat(
     vehicle: &VehicleParameters,
     yaw_rad: f64,
 ) -> Option<Caveat> {
-    let [x, y] = force.impulse_n_s();
-    let (sin, cos) = match force.axes {
-        ForceAxes::World => yaw_rad.sin_cos(),
-        ForceAxes::Body => (0.0, 1.0),
+    let impulse_body_n_s = match force.axes {
+        ForceAxes::World => body_from_world(yaw_rad, force.impulse_n_s()),
+        ForceAxes::Body => force.impulse_n_s(),
     };
-    let impulse_body_n_s = [x * cos + y * sin, y * cos - x * sin];
     let point_m = [contact.x_body_m, contact.y_body_m];
     Footprint::from(&vehicle.geometry).pulled_side(point_m, impulse_body_n_s)?;
     let text = Phrase::new(

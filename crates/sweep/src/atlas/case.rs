@@ -7,6 +7,7 @@ use crate::atlas::{Atlas, Axis};
 use impactlab_core::collision::Scenario;
 use impactlab_core::numerics::wrap_angle_rad;
 use impactlab_core::units::{Phrase, Quantity, UnitSystem};
+use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{Ending, PitEnd, VehicleParameters};
 
 /// Masses of the cars of the plan, kg, and by how much the striking car is faster along the lane in it, m/s:
@@ -84,8 +85,11 @@ impl Meeting {
         let is_side = y_m.abs() > 0.4 * scenario.struck.footprint().width_m;
         // The striking car comes from the right to the right side and turns to the left.
         let side = -y_m.signum();
-        let (sin, cos) = scenario.struck.heading_rad.sin_cos();
-        let in_lane = |x: f64, y: f64| [x * cos + y * sin, side * (y * cos - x * sin)];
+        let lane = Heading::new(scenario.struck.heading_rad);
+        let in_lane = |x: f64, y: f64| {
+            let [along, left] = lane.body_from_world([x, y]);
+            [along, side * left]
+        };
         let [speed, _] = in_lane(scenario.struck.vx_world_m_s, scenario.struck.vy_world_m_s);
         let [along, closing_m_s] =
             in_lane(scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s);

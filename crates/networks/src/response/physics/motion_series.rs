@@ -2,6 +2,7 @@
 
 use crate::response::STEP_S;
 use impactlab_core::data::{Channel, SeriesError, TimeSeries};
+use impactlab_core::vehicle::frames::body_from_world;
 use impactlab_core::vehicle::{VehicleInput, VehicleState};
 
 /// States every 10 ms and the force over the coming step as a time series; the last sample has no
@@ -31,15 +32,9 @@ pub fn motion_series(
     }
     let force = |axis: usize| -> Vec<f64> {
         let component = |(state, input): (&VehicleState<f64>, &VehicleInput<f64>)| {
-            input.collision.map_or(0.0, |collision| {
-                let [fx, fy] = collision.force_n;
-                let (sin, cos) = state.yaw_rad.sin_cos();
-                match (collision.in_world_axes, axis) {
-                    (false, 0) => fx,
-                    (false, _) => fy,
-                    (true, 0) => cos * fx + sin * fy,
-                    (true, _) => cos * fy - sin * fx,
-                }
+            input.collision.map_or(0.0, |collision| match collision.in_world_axes {
+                true => body_from_world(state.yaw_rad, collision.force_n)[axis],
+                false => collision.force_n[axis],
             })
         };
         let forces = states.iter().zip(inputs).map(component);

@@ -7,6 +7,7 @@ use crate::analysis::bands_of_draws;
 use impactlab_core::collision::{Impact, ImpliedContact, ImpliedContacts, Regime, RestitutionForm};
 use impactlab_core::numerics::random_stream;
 use impactlab_core::units::{Estimate, NumberFormat, Phrase, PhraseValue};
+use impactlab_core::vehicle::frames::{Heading, body_from_world};
 use impactlab_networks::force::ForcePrediction;
 
 /// Whole curves drawn from a predicted force, whose impulses imply restitution and impulse ratio.
@@ -71,7 +72,7 @@ impl MomentumReport {
             friction_limit: surface.friction_limit,
             critical_impulse_ratio: impact.critical_impulse_ratio(),
             regime: solution.regime,
-            impulse_n_s: turned(solution.impulse_world_n_s, -heading_rad),
+            impulse_n_s: body_from_world(heading_rad, solution.impulse_world_n_s),
         })
     }
 }
@@ -91,8 +92,9 @@ impl ImpliedContactReport {
     ) -> Option<Self> {
         let mut rng = random_stream(seed, "implied contact", 0);
         let curves = prediction.mixture.sample(N_DRAWS, &mut rng);
+        let heading = Heading::new(heading_rad);
         let impulses_world_n_s: Vec<[f64; 2]> =
-            curves.iter().map(|curve| turned(curve.impulse_n_s(), heading_rad)).collect();
+            curves.iter().map(|curve| heading.world_from_body(curve.impulse_n_s())).collect();
         let ImpliedContacts { contacts, p_rigid, p_energy_gain } =
             impact.implied_contacts(&impulses_world_n_s);
         if contacts.is_empty() {
@@ -130,17 +132,13 @@ pub(crate) fn warning_phrase(p_rigid: f64, p_energy_gain: f64) -> Phrase {
     .with(PhraseValue::Share(p_energy_gain))
 }
 
-fn turned([x, y]: [f64; 2], angle_rad: f64) -> [f64; 2] {
-    let (sin, cos) = angle_rad.sin_cos();
-    [x * cos - y * sin, x * sin + y * cos]
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
     use impactlab_core::collision::Scenario;
+    use impactlab_core::vehicle::frames::world_from_body;
     use impactlab_networks::force::ForceScenario;
     use impactlab_networks::shipped::ModelSource;
 
@@ -150,12 +148,13 @@ mod tests {
     fn the_solver_with_the_implied_values_gives_the_predicted_impulse() {
         let model = ModelSource::Shipped.force_model().unwrap();
         let mut seen = Vec::new();
-        for quarter in [0.0, 1.0] {
+        for turn_rad in [0.0, FRAC_PI_2] {
             let mut scenario = Scenario::example();
             for vehicle in [&mut scenario.struck, &mut scenario.striking] {
-                vehicle.heading_rad += quarter * FRAC_PI_2;
+                vehicle.heading_rad += turn_rad;
+                let velocity_m_s = [vehicle.vx_world_m_s, vehicle.vy_world_m_s];
                 [vehicle.vx_world_m_s, vehicle.vy_world_m_s] =
-                    turned([vehicle.vx_world_m_s, vehicle.vy_world_m_s], quarter * FRAC_PI_2);
+                    world_from_body(turn_rad, velocity_m_s);
             }
             let numbers = ForceScenario::from_scenario(&scenario).unwrap();
             let prediction = model.predict(&numbers).unwrap();
@@ -167,7 +166,7 @@ mod tests {
             assert!((report.momentum.restitution - impact.surface.restitution).abs() < 1e-12);
             impact.surface.restitution = report.restitution.median;
             impact.surface.friction_limit = report.impulse_ratio.median.abs();
-            let [x, y] = turned(impact.solve().unwrap().impulse_world_n_s, -heading_rad);
+            let [x, y] = body_from_world(heading_rad, impact.solve().unwrap().impulse_world_n_s);
             let [mean_x, mean_y] = [0, 1].map(|axis| prediction.mixture.impulse(axis).mean());
             let off = (x - mean_x).hypot(y - mean_y) / mean_x.hypot(mean_y);
             assert!(off < 0.05, "{off}: {report:?}");
