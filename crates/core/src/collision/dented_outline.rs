@@ -12,6 +12,7 @@
 //! nothing of it comes from stiffness, and rigid outlines overlap as far as the motions say.
 
 use crate::collision::{Footprint, Pose};
+use crate::numerics::line_length;
 
 /// Places along the common line.
 const N_PLACES: usize = 25;
@@ -120,10 +121,9 @@ fn holds(outline: &[[f64; 2]; 4], [x, y]: [f64; 2]) -> bool {
 
 /// The place at a share of the length of a line, which has points.
 fn along(line: &[[f64; 2]], share: f64) -> [f64; 2] {
-    let length = |pair: &[[f64; 2]]| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-    let mut left = share * line.windows(2).map(length).sum::<f64>();
+    let mut left = share * line_length(line);
     for pair in line.windows(2) {
-        let piece = length(pair);
+        let piece = line_length(pair);
         if left <= piece && piece > 0.0 {
             return [0, 1]
                 .map(|axis| pair[0][axis] + (pair[1][axis] - pair[0][axis]) * left / piece);

@@ -6,6 +6,7 @@ use crate::data::{
     Channel, ColumnMap, ColumnUse, GeographicPlace, Note, Table, TimeSeries, course, path_speed,
     signals, steering,
 };
+use crate::numerics::line_length;
 use crate::units::significant;
 
 /// How far a path of degrees reaches in metres at most, m, and on the earth at least, m.
@@ -56,9 +57,8 @@ fn degrees(by_channel: &BTreeMap<Channel, ColumnUse>, series: &TimeSeries) -> Op
     };
     let on_earth_m: Vec<f64> = places.iter().map(on_earth_m).collect::<Option<_>>()?;
     let on_earth_m = on_earth_m.into_iter().fold(0.0, f64::max);
-    let way_m = |[from, to]: [&[f64; 2]; 2]| (to[0] - from[0]).hypot(to[1] - from[1]);
-    let read_m = places.iter().map(|at| way_m([&places[0], at])).fold(0.0, f64::max);
-    let steps_m: f64 = places.windows(2).map(|pair| way_m([&pair[0], &pair[1]])).sum();
+    let read_m = places.iter().map(|at| line_length(&[places[0], *at])).fold(0.0, f64::max);
+    let steps_m = line_length(&places);
     let is_driven = on_earth_m > ON_EARTH_M && SPEEDS_M_S.contains(&(on_earth_m / duration_s));
     let stands = read_m < READ_M && steps_m < TO_AND_FRO * read_m;
     (stands && is_driven && latitude_deg.abs() > LEAST_LATITUDE_DEG).then(|| Note::Doubt {

@@ -58,6 +58,7 @@ fn dented(outline: &ContactOutline, dents_m: &[f64]) -> Option<[Vec<[f64; 2]>; 2
 mod tests {
     use super::*;
     use impactlab_core::collision::Footprint;
+    use impactlab_core::numerics::line_length;
 
     #[test]
     fn a_dent_over_the_first_element_hangs_together() {
@@ -73,7 +74,7 @@ mod tests {
         assert_eq!(closed.len(), n + 1);
         assert_eq!(closed[0], closed[n]);
         assert_eq!(dent.len(), 7);
-        let longest = dent.windows(2).map(|at| (at[1][0] - at[0][0]).hypot(at[1][1] - at[0][1]));
+        let longest = dent.windows(2).map(line_length);
         assert!(longest.fold(0.0, f64::max) < 0.25, "{dent:?}");
     }
 }

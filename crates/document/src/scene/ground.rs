@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::scene::GroundPicture;
+use impactlab_core::numerics::line_length;
 use impactlab_core::site::{
     Drawing, EdgeLine, GeographicFrame, Lane, MapFeature, Site, SiteOrigin, SurveyedPoint,
     extent_of, map_features,
@@ -181,8 +182,7 @@ const MAX_DASHES: f64 = 20_000.0;
 fn dashes(points_m: &[[f64; 2]], [dash_m, gap_m]: [f64; 2]) -> Vec<Vec<[f64; 2]>> {
     let mut along_m = vec![0.0];
     for pair in points_m.windows(2) {
-        let step = (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-        along_m.push(along_m.last().copied().unwrap_or(0.0) + step);
+        along_m.push(along_m.last().copied().unwrap_or(0.0) + line_length(pair));
     }
     let end_m = along_m.last().copied().unwrap_or(0.0);
     let at = |way_m: f64| {

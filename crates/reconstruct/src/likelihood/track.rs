@@ -1,5 +1,6 @@
 //! The path of a car with what the comparison with marks needs of it.
 
+use impactlab_core::numerics::line_length;
 use impactlab_core::vehicle::{Path, PathEnd, PathPoint};
 
 /// Time between the points of a path that are kept, s.
@@ -154,7 +155,7 @@ impl Track {
         let mut sum = 0.0;
         let mut travelled_m = vec![0.0];
         travelled_m.extend(at_m.windows(2).map(|pair| {
-            sum += (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
+            sum += line_length(pair);
             sum
         }));
         let velocity_m_s = self
