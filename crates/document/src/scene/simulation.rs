@@ -110,7 +110,7 @@ pub(super) fn striking_shape(track: &VehicleTrack) -> Arc<CarShape> {
 pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     let Some(track) = &analysis.striking else { return };
     let shape = striking_shape(track);
-    let controls = track.start.controlled();
+    let controls = track.controlled();
     add_marks(scene, &tire_marks(&track.motion, controls));
     let motion = CarMotion::from_series(&track.motion, &shape.body, Some(controls));
     let named = match track.start.vehicle.fixed {

@@ -118,12 +118,23 @@ impl Settings {
 pub struct VehicleTrack {
     /// Outline of the vehicle.
     pub footprint: Footprint,
-    /// Parameters, state at first contact, where the force acts, and what happens to its wheels.
+    /// Parameters, state at first contact, where the force acts, and what its driver and systems are to do.
     pub start: StruckVehicle,
     /// Motion of the vehicle, with at least the channels X, Y and yaw.
     pub motion: TimeSeries,
     /// What steers, drives, brakes and locks its wheels in this motion.
     pub controls: Controls,
+}
+
+impl VehicleTrack {
+    /// The vehicle with what acted on its wheels in this motion and the ground under them.
+    pub fn controlled(&self) -> ControlledVehicle<'_> {
+        ControlledVehicle {
+            vehicle: &self.start.vehicle,
+            controls: &self.controls,
+            friction_zones: &self.start.friction_zones,
+        }
+    }
 }
 
 /// Recorded and computed data of one case.

@@ -22,8 +22,8 @@ use impactlab_core::uncertainty::ForceCurve;
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{
-    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, RoadDraws,
-    Sensitivity, VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, FrictionZone, Manoeuvre, RoadDraws, Sensitivity,
+    VehicleDraws, VehicleInput, VehicleParameters, VehicleState,
 };
 use impactlab_networks::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use impactlab_networks::learning::LearningError;
@@ -167,15 +167,6 @@ pub enum MotionForecastError {
 }
 
 impl StruckVehicle {
-    /// The vehicle with what acts on its wheels and the ground under them.
-    pub fn controlled(&self) -> ControlledVehicle<'_> {
-        ControlledVehicle {
-            vehicle: &self.vehicle,
-            controls: &self.controls,
-            friction_zones: &self.friction_zones,
-        }
-    }
-
     /// Inputs of the vehicle at each time step under a force. Drivers and systems do what they do in the
     /// motion of the 4DOF model under this force.
     ///

@@ -285,7 +285,8 @@ mod tests {
     use impactlab_core::numerics::interpolate;
     use impactlab_core::units::STANDARD_GRAVITY_M_S2;
     use impactlab_core::vehicle::{
-        BRAKE_TORQUES, Braking, Ending, HeldSteer, PitDriver, Preset, StabilityControl,
+        BRAKE_TORQUES, Braking, Ending, HeldSteer, PitDriver, Preset, StabilityControl, TireMark,
+        TireMarkKind, tire_marks,
     };
 
     /// A report gave the struck car 4.9 m in one section and 4.52 m in another.
@@ -362,6 +363,25 @@ mod tests {
             let largest_rad = steer.steer_rad.iter().copied().fold(0.0, f64::max);
             assert!((largest_rad - turned_rad).abs() < 3e-3, "{largest_rad}, {turned_rad} rad");
         }
+    }
+
+    /// The brakes of a driver who acts by the motion locked no wheel in marks and scenes.
+    #[test]
+    fn the_striking_vehicle_leaves_the_marks_of_its_driver() {
+        let mut scenario = Scenario::example();
+        let pit =
+            PitDriver { longest_s: Some(0.3), brake_share: Some(2.0), ..PitDriver::default() };
+        scenario.striking_ending = Some(Ending { pit: Some(pit), ..Ending::default() });
+        let settings = Settings::of_preset(Preset::Target);
+        let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
+        let track = analysis.striking.unwrap();
+        let marks = tire_marks(&track.motion, track.controlled());
+        let locked_m: Vec<f64> = marks
+            .iter()
+            .filter(|mark| mark.kind() == TireMarkKind::Locked)
+            .map(TireMark::length_m)
+            .collect();
+        assert!(locked_m.iter().any(|length_m| *length_m > 1.0), "{locked_m:?} m");
     }
 
     /// Followed through all contacts, vehicles push each other and do not go through each other.

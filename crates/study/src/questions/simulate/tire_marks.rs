@@ -33,7 +33,7 @@ impl TireMarkReport {
         let struck = analysis.simulation.as_ref();
         let struck = struck.map(|motion| tire_marks(&motion.series, analysis.controlled()));
         let striking = analysis.striking.as_ref();
-        let striking = striking.map(|track| tire_marks(&track.motion, track.start.controlled()));
+        let striking = striking.map(|track| tire_marks(&track.motion, track.controlled()));
         [("struck", struck), ("striking", striking)]
             .into_iter()
             .flat_map(|(vehicle, marks)| {
