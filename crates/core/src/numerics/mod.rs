@@ -42,6 +42,6 @@ pub use scalar::{Lanes, LanesOver, Scalar};
 pub use seed::{random_stream, sha256_hex};
 pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};
 pub use statistics::{
-    Summary, index_of_share, jackknife_errors, median, quantile_error_of_sorted,
+    Summary, index_of_share, jackknife_errors, ln_sum_exp, median, quantile_error_of_sorted,
     quantile_of_sorted, quantile_of_weighted, share_standard_error, wilson_interval,
 };

@@ -216,6 +216,22 @@ pub fn index_of_share(weights: impl IntoIterator<Item = f64>, share: f64) -> usi
     last
 }
 
+/// Natural logarithm of `Σ exp(v)`, whose terms may be too small or too large for a number by themselves; −∞ if
+/// every value is, or without any.
+///
+/// ```
+/// # use impactlab_core::numerics::ln_sum_exp;
+/// assert!((ln_sum_exp(&[-2000.0, -2000.0]) - (2.0_f64.ln() - 2000.0)).abs() < 1e-9);
+/// assert_eq!(ln_sum_exp(&[f64::NEG_INFINITY; 2]), f64::NEG_INFINITY);
+/// ```
+pub fn ln_sum_exp(values: &[f64]) -> f64 {
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if largest == f64::NEG_INFINITY {
+        return largest;
+    }
+    largest + values.iter().map(|value| (value - largest).exp()).sum::<f64>().ln()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

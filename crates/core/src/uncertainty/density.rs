@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::numerics::ln_sum_exp;
 use crate::uncertainty::{CurveComponent, CurveMixture, ForceCurve, MixtureError};
 
 impl CurveMixture {
@@ -32,8 +33,7 @@ impl CurveMixture {
             }
             logs.push(component.weight.ln() + component.log_density(&values));
         }
-        let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        Ok(largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln())
+        Ok(ln_sum_exp(&logs))
     }
 }
 

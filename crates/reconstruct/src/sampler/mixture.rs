@@ -19,7 +19,7 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use impactlab_core::numerics::index_of_share;
+use impactlab_core::numerics::{index_of_share, ln_sum_exp};
 
 /// Largest number of parts.
 const MAX_PARTS: usize = 6;
@@ -44,15 +44,6 @@ const WIDE_SHARE: f64 = 0.25;
 
 /// How much wider they are, t.
 const WIDE: f64 = 1.15;
-
-/// Natural logarithm of `Σ exp(v)`; −∞ if every value is.
-pub(super) fn ln_sum_exp(values: &[f64]) -> f64 {
-    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    if largest == f64::NEG_INFINITY {
-        return largest;
-    }
-    largest + values.iter().map(|value| (value - largest).exp()).sum::<f64>().ln()
-}
 
 /// One normal distribution of the mixture.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -18,7 +18,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::Likelihood;
-use super::mixture::{Mixture, Weighted, is_plausible, ln_sum_exp};
+use super::mixture::{Mixture, Weighted, is_plausible};
+use impactlab_core::numerics::ln_sum_exp;
 
 /// Number of halvings of the range of the temperature.
 const N_BISECTIONS: usize = 50;
