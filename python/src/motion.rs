@@ -39,7 +39,8 @@ pub(crate) fn simulate(request: &Bound<'_, PyAny>, folder: Option<PathBuf>) -> P
     })?;
     let SimulateAnswer { report, analysis } = answer(py, question)?;
     let simulated = analysis.written_motion().map_err(|error| refused(&error))?;
-    let striking = analysis.striking.map(|track| track.motion);
+    let striking = analysis.striking.map(|track| track.written_motion()).transpose();
+    let striking = striking.map_err(|error| refused(&error))?;
     Ok(Motion {
         report: to_python(py, &report)?.unbind(),
         columns: simulated.map_or_else(|| Ok(PyDict::new(py).unbind()), |of| of_series(py, of))?,

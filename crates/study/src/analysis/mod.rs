@@ -135,6 +135,26 @@ impl VehicleTrack {
             friction_zones: &self.start.friction_zones,
         }
     }
+
+    /// The motion as it is written to a file: with the torques at the wheels, if there are any.
+    ///
+    /// # Errors
+    /// [`SeriesError`] if the torques do not fit the motion.
+    pub fn written_motion(&self) -> Result<TimeSeries, SeriesError> {
+        with_torques(&self.motion, self.controlled())
+    }
+}
+
+fn with_torques(
+    motion: &TimeSeries,
+    vehicle: ControlledVehicle<'_>,
+) -> Result<TimeSeries, SeriesError> {
+    let mut series = motion.clone();
+    let radius_m = vehicle.vehicle.tires.rolling_radius_m;
+    for (channel, torque_n_m) in vehicle.controls.torques_n_m(series.time_s(), radius_m) {
+        series.insert(channel, torque_n_m)?;
+    }
+    Ok(series)
 }
 
 /// Recorded and computed data of one case.
@@ -201,13 +221,8 @@ impl Analysis {
     /// # Errors
     /// [`SeriesError`] if the torques do not fit the motion.
     pub fn written_motion(&self) -> Result<Option<TimeSeries>, SeriesError> {
-        let Some(motion) = &self.simulation else { return Ok(None) };
-        let mut series = motion.series.clone();
-        let radius_m = self.vehicle.tires.rolling_radius_m;
-        for (channel, torque_n_m) in self.controls.torques_n_m(series.time_s(), radius_m) {
-            series.insert(channel, torque_n_m)?;
-        }
-        Ok(Some(series))
+        let motion = self.simulation.as_ref();
+        motion.map(|motion| with_torques(&motion.series, self.controlled())).transpose()
     }
 }
 

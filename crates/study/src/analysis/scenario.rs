@@ -285,8 +285,8 @@ mod tests {
     use impactlab_core::numerics::interpolate;
     use impactlab_core::units::STANDARD_GRAVITY_M_S2;
     use impactlab_core::vehicle::{
-        BRAKE_TORQUES, Braking, Ending, HeldSteer, PitDriver, Preset, StabilityControl, TireMark,
-        TireMarkKind, tire_marks,
+        BRAKE_TORQUES, Braking, DRIVE_TORQUES, Ending, HeldSteer, PitDriver, Preset,
+        StabilityControl, TireMark, TireMarkKind, tire_marks,
     };
 
     /// A report gave the struck car 4.9 m in one section and 4.52 m in another.
@@ -352,6 +352,11 @@ mod tests {
             assert!((total_n_m - force_n * tires.rolling_radius_m).abs() < 1e-6, "{torques_n_m:?}");
             assert_eq!(at(&written, Channel::BrakeFl, 30), 0.0, "nobody brakes before 0.4 s");
             let striking = analysis.striking.unwrap();
+            let written = striking.written_motion().unwrap();
+            let drives = |channel: &Channel| {
+                written.require(*channel).unwrap().iter().any(|torque_n_m| *torque_n_m > 0.0)
+            };
+            assert!(DRIVE_TORQUES.iter().any(drives), "its torques are written, too");
             assert_eq!(striking.controls.closed_loop, None, "as it was, not as it is decided");
             let wheels = striking.controls.wheels.unwrap();
             assert_eq!(wheels.time_s, striking.motion.time_s());
