@@ -5,11 +5,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::atlas::AtlasError;
-use impactlab_core::data::read_utf8;
+use impactlab_core::data::TomlFile;
 use impactlab_core::units::{NumberFormat, Quantity, Unit, UnitSystem, significant, trimmed};
-
-/// Most bytes of a file of axes.
-const MAX_AXES_BYTES: u64 = 1 << 20;
 
 /// Most bins of an axis, and most letters of a name or label.
 const MAX_BINS: usize = 1000;
@@ -88,21 +85,18 @@ impl Axis {
     /// Reads a file of axes.
     ///
     /// # Errors
-    /// [`AtlasError::Data`], and as [`Axis::from_toml`].
+    /// As [`Axis::from_toml`].
     pub fn read_all(path: &Path) -> Result<Vec<Self>, AtlasError> {
-        Self::from_toml(&read_utf8(path, MAX_AXES_BYTES)?, path)
+        Self::from_toml(&TomlFile::read(path)?, path)
     }
 
     /// The axes that a text says. Its edges may be in any unit of their quantity; they become SI units.
     ///
     /// # Errors
-    /// [`AtlasError::AxesSyntax`], [`AtlasError::Axis`], [`AtlasError::SameAxis`],
+    /// [`AtlasError::Axes`], [`AtlasError::Axis`], [`AtlasError::SameAxis`],
     /// [`AtlasError::NoAxes`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Vec<Self>, AtlasError> {
-        let file: AxisFile = toml::from_str(text).map_err(|source| AtlasError::AxesSyntax {
-            path: path.to_owned(),
-            source: Box::new(source),
-        })?;
+        let file: AxisFile = TomlFile { path, text }.to()?;
         let axes = file.axis.into_iter().map(Self::in_si).collect::<Result<Vec<_>, _>>()?;
         check_all(&axes)?;
         Ok(axes)
@@ -273,6 +267,17 @@ mod tests {
         let unit = Axis { unit: "mph".to_owned(), ..speed() };
         assert_eq!(unit.check(), Err(AxisError::Unit { unit: "mph".to_owned() }));
         assert!(matches!(check_all(&[speed(), speed()]), Err(AtlasError::SameAxis { .. })));
+    }
+
+    /// “says no axes: TOML parse error at line 2, column 1 | 2 | edgez = [1, 2]” was the message.
+    #[test]
+    fn what_a_file_of_axes_has_wrong_is_told_by_its_place() {
+        let said =
+            |text: &str| Axis::from_toml(text, Path::new("axes.toml")).unwrap_err().to_string();
+        let unknown = said("[[axis]]\nedgez = [1, 2]\n");
+        assert!(unknown.starts_with("axes.toml:2:1: unknown field `edgez`"), "{unknown}");
+        let open = said("[[axis]]\nedges = [1, 2\n");
+        assert!(open.starts_with("axes.toml:2:"), "{open}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::SweepError;
 use crate::atlas::{AtlasFileError, AxisError, SensitivityError};
-use impactlab_core::data::DataError;
+use impactlab_core::data::{DataError, TomlError};
 
 /// An atlas that cannot be made, read or written.
 #[derive(Debug, thiserror::Error)]
@@ -34,14 +34,9 @@ pub enum AtlasError {
     /// An atlas cannot be written as a file.
     #[error("the atlas cannot be written")]
     Encode(#[source] Box<AtlasFileError>),
-    /// A file of axes is no TOML, or has other keys.
-    #[error("{}: says no axes", path.display())]
-    AxesSyntax {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, with line and column.
-        source: Box<toml::de::Error>,
-    },
+    /// A file of axes cannot be read, is no TOML, or has other keys.
+    #[error(transparent)]
+    Axes(#[from] TomlError),
     /// An axis is no axis.
     #[error("axis {name:?}")]
     Axis {
