@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::data::formats::{Converted, Said, chosen_part, number_text};
-use crate::data::{DataError, ReadSettings, Sheet};
+use crate::data::{DataError, Place, ReadSettings, Sheet};
 use crate::units::KNOT_M_S;
 
 /// Lines at the beginning by which a log is known.
@@ -57,6 +57,14 @@ pub(super) fn as_table(
         () if is_nmea(text) => ("a log of NMEA sentences", nmea_track(text)),
         () => return Ok(None),
     };
+    if tracks.is_empty() && !doubts.is_empty() {
+        let why = format!(
+            "is {format} of which fewer than two are read: {}; take the log from the receiver once more, or give a \
+             CSV file with time, latitude and longitude",
+            doubts.join("; ")
+        );
+        return Err(DataError::DamagedAt { path: path.to_owned(), place: Place::Whole, why });
+    }
     if tracks.is_empty() {
         let remedy = "it has no track with positions; record one, or give a CSV file with time, latitude and \
                       longitude";
@@ -212,9 +220,11 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
         "RMC" => RMC_HEADER,
         _ => "time [s]\tlatitude [deg]\tlongitude [deg]",
     };
+    // A single place is no track.
+    let is_track = fixes.len() > 1;
     let rows: String = fixes.into_iter().map(|fix| fix.row).collect();
     let track = Track { name: wanted.to_owned(), header, rows };
-    (if track.rows.is_empty() { Vec::new() } else { vec![track] }, doubts)
+    (if is_track { vec![track] } else { Vec::new() }, doubts)
 }
 
 /// Gives fixes without a course that of the one before, the first ones that of the first one that has it; their number.
@@ -417,6 +427,23 @@ mod tests {
             "course over ground",
         ] {
             assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
+        }
+    }
+
+    /// Signs that were changed on the way are said, and not that there are no positions.
+    #[test]
+    fn a_log_of_wrong_checksums_says_how_many() {
+        let rmc = |second: u32| {
+            sentence(&format!(
+                "GPRMC,10000{second}.00,A,5200.0000,N,00059.9950,W,10.0,090.0,251126,,"
+            ))
+        };
+        let wrong = |second: u32| rmc(second).replace(",10.0,", ",11.0,");
+        for n_good in [0, 1] {
+            let text: String = (0..n_good).map(rmc).chain((n_good..9).map(wrong)).collect();
+            let error = read("a.nmea", &text).unwrap_err().to_string();
+            let said = format!("two are read: {} sentences with a wrong checksum", 9 - n_good);
+            assert!(error.contains(&said), "{error}");
         }
     }
 
