@@ -182,7 +182,7 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
         true => "RMC",
         false => "GGA",
     };
-    let (mut fixes, mut n_wrong, mut n_without) = (Vec::new(), 0, 0);
+    let (mut fixes, mut n_wrong, mut n_without, mut n_estimated) = (Vec::new(), 0, 0, 0);
     for line in lines().filter(|line| kind(line) == Some(wanted)) {
         let Some(sentence) = checked(line) else {
             n_wrong += 1;
@@ -196,6 +196,7 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
         let time_s = fields.get(1).and_then(|text| seconds(text));
         match row.zip(time_s) {
             Some((row, time_s)) => {
+                n_estimated += usize::from(is_estimated(wanted, &fields));
                 fixes.push(Fix { talker: line.chars().skip(1).take(2).collect(), time_s, row });
             }
             None => n_without += 1,
@@ -207,6 +208,12 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
     }
     if n_without > 0 {
         doubts.push(format!("{n_without} sentences without a position are left out"));
+    }
+    if n_estimated > 0 {
+        doubts.push(format!(
+            "{n_estimated} sentences have positions that the receiver says it did not measure, but went on with by dead \
+             reckoning, was told or simulated: they are read, and may be far off"
+        ));
     }
     let (mut fixes, of_talkers) = of_one_clock(fixes, wanted);
     doubts.extend(of_talkers);
@@ -317,6 +324,13 @@ fn gga(fields: &[&str]) -> Option<String> {
     let [_, time, lat, ns, lon, ew, quality, ..] = fields else { return None };
     let [time, lat, lon] = [clock(time)?, degrees(lat, ns, 2)?, degrees(lon, ew, 3)?];
     (*quality != "0" && !quality.is_empty()).then(|| format!("{time}\t{lat}\t{lon}\n"))
+}
+
+/// Whether a receiver says of a position that it is estimated, typed or simulated: by the mode of `RMC`, which older
+/// ones do not have, or the quality of `GGA`.
+fn is_estimated(kind: &str, fields: &[&str]) -> bool {
+    let (idx, marks) = if kind == "RMC" { (12, ["E", "M", "S"]) } else { (6, ["6", "7", "8"]) };
+    fields.get(idx).is_some_and(|mark| marks.contains(mark))
 }
 
 /// Seconds of the day of `hhmmss.ss`.
@@ -444,6 +458,29 @@ mod tests {
             let error = read("a.nmea", &text).unwrap_err().to_string();
             let said = format!("two are read: {} sentences with a wrong checksum", 9 - n_good);
             assert!(error.contains(&said), "{error}");
+        }
+    }
+
+    #[test]
+    fn positions_that_were_not_measured_are_said() {
+        let estimated = |sentences: [String; 2]| {
+            let loaded = read("a.nmea", &sentences.concat()).unwrap();
+            let is_said = |note: &crate::data::Note| note.to_string().contains("did not measure");
+            loaded.notes.iter().any(is_said)
+        };
+        for (mode, quality, expected) in [("A", 1, false), ("E", 6, true), ("S", 8, true)] {
+            let rmc = |second: u32| {
+                sentence(&format!(
+                    "GPRMC,10000{second}.00,A,5200.0000,N,00059.99{second}0,E,10.0,090.0,251126,,,{mode}"
+                ))
+            };
+            let gga = |second: u32| {
+                sentence(&format!(
+                    "GPGGA,10000{second}.00,5200.0000,N,00059.99{second}0,E,{quality},12,0.7,9.0,M,,M,,"
+                ))
+            };
+            assert_eq!(estimated([rmc(1), rmc(2)]), expected, "mode {mode}");
+            assert_eq!(estimated([gga(1), gga(2)]), expected, "quality {quality}");
         }
     }
 
