@@ -1,0 +1,155 @@
+//! Logs of satellite receivers as tables: places, what is left out, and what is said of it.
+
+use super::*;
+use crate::data::{Channel, read_any_series};
+
+fn read(name: &str, text: &str) -> Result<crate::data::Loaded, DataError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, text).unwrap();
+    read_any_series(&path, None)
+}
+
+fn sentence(body: &str) -> String {
+    let sum = body.bytes().fold(0, |sum: u8, byte| sum ^ byte);
+    format!("${body}*{sum:02X}\r\n")
+}
+
+#[test]
+fn a_gpx_track_becomes_a_path_in_metres() {
+    let point = |lon: f64, second: u32| {
+        format!(
+            "<trkpt lat=\"52.0\" lon=\"{lon}\"><ele>9</ele><time>2026-11-25T10:00:0{second}Z</time></trkpt>"
+        )
+    };
+    let text = format!(
+        "<?xml version=\"1.0\"?>\n<gpx version=\"1.1\"><trk><trkseg>{}{}</trkseg></trk></gpx>",
+        point(-1.0, 0),
+        point(-0.999, 5)
+    );
+    let loaded = read("a.gpx", &text).unwrap();
+    // 0.001° of longitude at 52° is 68.7 m.
+    let x = loaded.series.require(Channel::X).unwrap();
+    assert!((x[1] - 68.68).abs() < 0.05 && x[0] == 0.0, "{x:?}");
+    assert_eq!(loaded.series.time_s(), [36_000.0, 36_005.0]);
+    let said = |loaded: &crate::data::Loaded| {
+        let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+        notes.join("\n").contains("one of 2 parts of the file; not read are sheet=2 \"track 2\"")
+    };
+    assert!(!said(&loaded), "{:?}", loaded.notes);
+    let twice = text.replace("</trk>", "</trk><trk></trk>");
+    let segment = text.split("<trk>").nth(1).and_then(|of| of.split("</trk>").next()).unwrap();
+    let twice = twice.replace("<trk></trk>", &format!("<trk>{segment}</trk>"));
+    assert!(said(&read("a.gpx", &twice).unwrap()));
+    assert!(read("a.gpx", "<?xml version=\"1.0\"?>\n<gpx></gpx>").is_err());
+    let timeless = text.replace("<time>", "<cmt>").replace("</time>", "</cmt>");
+    let error = read("a.gpx", &timeless).unwrap_err().to_string();
+    assert!(error.contains("its points have no times"), "{error}");
+}
+
+#[test]
+fn sentences_become_a_path_and_bad_ones_are_counted() {
+    let rmc = |seconds: &str, lon: &str, status: char| {
+        sentence(&format!("GPRMC,1000{seconds},{status},5200.0000,N,{lon},W,10.0,090.0,251126,,"))
+    };
+    let good = rmc("00.00", "00100.0000", 'A') + &rmc("01.00", "00059.9950", 'A');
+    let bad = good.clone() + &rmc("02.00", "00059.9900", 'V') + "$GPRMC,100003.00,A,1,N*00\r\n";
+    let loaded = read("a.nmea", &bad).unwrap();
+    assert_eq!(loaded.series.n_samples(), 2);
+    let x = loaded.series.require(Channel::X).unwrap();
+    assert!((x[1] - 5.72).abs() < 0.01, "{x:?}");
+    let speed = loaded.series.require(Channel::Speed).unwrap();
+    assert!((speed[0] - 5.144_44).abs() < 1e-4, "{speed:?}");
+    assert!(loaded.series.require(Channel::Yaw).unwrap()[0].abs() < 1e-12);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    for said in [
+        "1 sentences with a wrong",
+        "1 sentences without a position",
+        "the antenna",
+        "course over ground",
+    ] {
+        assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
+    }
+}
+
+/// Signs that were changed on the way are said, and not that there are no positions.
+#[test]
+fn a_log_of_wrong_checksums_says_how_many() {
+    let rmc = |second: u32| {
+        sentence(&format!("GPRMC,10000{second}.00,A,5200.0000,N,00059.9950,W,10.0,090.0,251126,,"))
+    };
+    let wrong = |second: u32| rmc(second).replace(",10.0,", ",11.0,");
+    for n_good in [0, 1] {
+        let text: String = (0..n_good).map(rmc).chain((n_good..9).map(wrong)).collect();
+        let error = read("a.nmea", &text).unwrap_err().to_string();
+        let said = format!("two are read: {} sentences with a wrong checksum", 9 - n_good);
+        assert!(error.contains(&said), "{error}");
+    }
+}
+
+#[test]
+fn positions_that_were_not_measured_are_said() {
+    let estimated = |sentences: [String; 2]| {
+        let loaded = read("a.nmea", &sentences.concat()).unwrap();
+        let is_said = |note: &crate::data::Note| note.to_string().contains("did not measure");
+        loaded.notes.iter().any(is_said)
+    };
+    for (mode, quality, expected) in [("A", 1, false), ("E", 6, true), ("S", 8, true)] {
+        let rmc = |second: u32| {
+            sentence(&format!(
+                "GPRMC,10000{second}.00,A,5200.0000,N,00059.99{second}0,E,10.0,090.0,251126,,,{mode}"
+            ))
+        };
+        let gga = |second: u32| {
+            sentence(&format!(
+                "GPGGA,10000{second}.00,5200.0000,N,00059.99{second}0,E,{quality},12,0.7,9.0,M,,M,,"
+            ))
+        };
+        assert_eq!(estimated([rmc(1), rmc(2)]), expected, "mode {mode}");
+        assert_eq!(estimated([gga(1), gga(2)]), expected, "quality {quality}");
+    }
+}
+
+#[test]
+fn a_receiver_that_stands_has_no_course() {
+    let rmc = |second: u32, course: &str| {
+        let lon = 60.0 - 0.005 * f64::from(second);
+        sentence(&format!(
+            "GPRMC,10000{second}.00,A,5200.0000,N,000{lon:.4},W,10.0,{course},251126,,"
+        ))
+    };
+    let text = rmc(1, "") + &rmc(2, "080.0") + &rmc(3, "") + &rmc(4, "070.0");
+    let loaded = read("a.nmea", &text).unwrap();
+    let yaw = loaded.series.require(Channel::Yaw).unwrap();
+    let yaw_deg: Vec<f64> = yaw.iter().map(|yaw| yaw.to_degrees().round()).collect();
+    assert_eq!(yaw_deg, [10.0, 10.0, 10.0, 20.0]);
+    let is_said =
+        |note: &crate::data::Note| note.to_string().contains("2 sentences have no course");
+    assert!(loaded.notes.iter().any(is_said), "{:?}", loaded.notes);
+}
+
+/// A receiver names its satellites by turns, another one says each instant twice.
+#[test]
+fn sentences_of_several_talkers_are_read_once_and_said() {
+    let rmc = |talker: &str, second: u32| {
+        let lon = 60.0 - 0.005 * f64::from(second);
+        sentence(&format!(
+            "{talker}RMC,10000{second}.00,A,5200.0000,N,000{lon:.4},W,10.0,090.0,251126,,"
+        ))
+    };
+    let track = |talkers: &[(&str, u32)]| {
+        let text: String = talkers.iter().map(|(talker, second)| rmc(talker, *second)).collect();
+        let loaded = read("a.nmea", &text).unwrap();
+        let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+        (loaded.series.n_samples(), notes.join("\n"))
+    };
+    let (n, notes) = track(&[("GN", 1), ("GP", 2), ("GN", 3), ("GP", 4)]);
+    assert!(n == 4 && notes.contains("GPRMC at 2 instants"), "{n}: {notes}");
+    let (n, notes) = track(&[("GP", 1), ("GN", 1), ("GP", 2), ("GN", 2)]);
+    assert!(n == 2 && notes.contains("2 sentences GNRMC give the same"), "{n}: {notes}");
+    // The other receiver is late.
+    let (n, notes) = track(&[("GN", 3), ("GP", 2), ("GN", 5), ("GP", 4)]);
+    assert!(n == 2 && notes.contains("another receiver"), "{n}: {notes}");
+    let (n, notes) = track(&[("GP", 1), ("GP", 2)]);
+    assert!(n == 2 && !notes.contains("GPRMC"), "{n}: {notes}");
+}
