@@ -387,7 +387,9 @@ fn points_of(entity: &EntityType, error: f64) -> Option<Vec<[f64; 2]>> {
             if line.is_3d_polygon_mesh() || line.is_polyface_mesh() {
                 return None;
             }
-            let vertices = line.vertices().map(|vertex| (flat(&vertex.location), vertex.bulge));
+            // The frame of a curve, which is not drawn, stands among its points.
+            let drawn = line.vertices().filter(|vertex| !vertex.is_spline_frame_control_point());
+            let vertices = drawn.map(|vertex| (flat(&vertex.location), vertex.bulge));
             mirrored(polyline(vertices.collect(), line.is_closed(), error), &line.normal)?
         }
         EntityType::Circle(circle) => {

@@ -1,4 +1,4 @@
-use dxf::entities::{Circle, Entity, EntityType, Insert, Line, LwPolyline, Text};
+use dxf::entities::{Circle, Entity, EntityType, Insert, Line, LwPolyline, Polyline, Text, Vertex};
 use dxf::enums::{AcadVersion, Units};
 use dxf::{LwPolylineVertex, Point};
 
@@ -76,6 +76,32 @@ fn the_unit_has_to_be_known_and_the_coordinates_possible() {
     file.unit = Some(LengthUnit::Foot);
     let read = read_drawing(&file, &origin).unwrap();
     assert!((read.lines[0].points_m[1][0] - 9.144e6).abs() < 1e-6);
+}
+
+/// A polyline that was smoothed has the corners from which its curve was made, too.
+#[test]
+fn the_frame_of_a_smoothed_polyline_is_not_drawn() {
+    let mut drawing = dxf::Drawing::new();
+    drawing.header.version = AcadVersion::R2010;
+    drawing.header.default_drawing_units = Units::Meters;
+    let mut curve = Polyline::default();
+    curve.set_spline_fit_vertices_added(true);
+    for (x, y, is_frame) in [
+        (0.0, 0.0, true),
+        (5.0, 20.0, true),
+        (10.0, 0.0, true),
+        (0.0, 0.0, false),
+        (5.0, 10.0, false),
+    ] {
+        let mut vertex = Vertex::new(Point::new(x, y, 0.0));
+        vertex.set_is_spline_frame_control_point(is_frame);
+        vertex.set_is_spline_vertex_created_by_spline_fitting(!is_frame);
+        curve.add_vertex(&mut drawing, vertex);
+    }
+    drawing.add_entity(on("KERB", EntityType::Polyline(curve)));
+    let (_folder, file) = saved(&drawing);
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
+    assert_eq!(read.lines[0].points_m, [[0.0, 0.0], [5.0, 10.0]]);
 }
 
 #[test]
