@@ -4,7 +4,7 @@ use std::io::BufReader;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use e57::E57Reader;
+use e57::{E57Reader, PointCloud};
 use las::Reader;
 
 use crate::data::{MAX_CLOUD_BYTES, open_file};
@@ -23,7 +23,7 @@ pub(in crate::site) const OF_MERCATOR: &str = "its coordinates are those of a ma
 pub(super) struct CloudUnits {
     plane: LengthUnit,
     height: LengthUnit,
-    /// What is said of them, in words.
+    /// What is said of them, and of the places of scans, in words.
     pub note: Option<String>,
 }
 
@@ -39,12 +39,12 @@ impl CloudUnits {
         chosen: Option<LengthUnit>,
     ) -> Result<Self, SiteError> {
         match format {
-            CloudFormat::E57 if of_e57(path).plane == Some(StatedUnit::Mercator) => {
-                Err(damaged(path, &OF_MERCATOR))
-            }
-            CloudFormat::E57 => {
-                Ok(Self { plane: LengthUnit::Metre, height: LengthUnit::Metre, note: None })
-            }
+            CloudFormat::E57 => match of_e57(path) {
+                (stated, _) if stated.plane == Some(StatedUnit::Mercator) => {
+                    Err(damaged(path, &OF_MERCATOR))
+                }
+                (_, note) => Ok(Self { plane: LengthUnit::Metre, height: LengthUnit::Metre, note }),
+            },
             CloudFormat::Las => {
                 Self::chosen(chosen, stated(path)).map_err(|why| damaged(path, &why))
             }
@@ -176,15 +176,33 @@ fn stated(path: &Path) -> Stated {
     read.ok().flatten().unwrap_or_default()
 }
 
-/// What an E57 file states of its coordinate system, which few do.
-fn of_e57(path: &Path) -> Stated {
+/// What an E57 file states of its coordinate system, which few do, and what is said of its scans.
+fn of_e57(path: &Path) -> (Stated, Option<String>) {
     // As above, of the other reader.
     let read = catch_unwind(AssertUnwindSafe(|| {
         let (file, _) = open_file(path, MAX_CLOUD_BYTES).ok()?;
         let reader = E57Reader::new(BufReader::new(file)).ok()?;
-        reader.coordinate_metadata().map(of_wkt)
+        let stated = reader.coordinate_metadata().map(of_wkt).unwrap_or_default();
+        Some((stated, not_registered(&reader.pointclouds())))
     }));
     read.ok().flatten().unwrap_or_default()
+}
+
+/// That several scans stand at the origin, as those of a scanner before they are brought into one system.
+fn not_registered(scans: &[PointCloud]) -> Option<String> {
+    let scans: Vec<&PointCloud> = scans.iter().filter(|scan| scan.records > 0).collect();
+    let is_placed = |scan: &&&PointCloud| {
+        let place = scan.transform.as_ref().map(|of| &of.translation);
+        place.is_some_and(|of| [of.x, of.y, of.z].iter().any(|value| *value != 0.0))
+    };
+    let n = scans.len();
+    let n_at_origin = n - scans.iter().filter(is_placed).count();
+    (n_at_origin > 1).then(|| {
+        format!(
+            "{n_at_origin} of its {n} scans stand at the origin: unless they were in one system when they were written, \
+             they lie on top of each other; register them in the program of the scanner"
+        )
+    })
 }
 
 #[cfg(test)]

@@ -66,7 +66,8 @@ pub struct CloudSummary {
     pub largest_color: Option<f32>,
     /// Largest strength of an echo; `None` for a cloud without.
     pub largest_intensity: Option<f32>,
-    /// In which unit its coordinates were taken and why, in words; `None` for metres beyond doubt.
+    /// In which unit its coordinates were taken and why, and that scans may not be registered, in words; `None` for
+    /// metres beyond doubt.
     pub unit_note: Option<String>,
 }
 

@@ -49,27 +49,34 @@ fn las(version: (u8, u8), format: u8, is_compressed: bool, color_scale: u16) -> 
 
 /// The same as E57: the coordinates from a scanner that stands elsewhere.
 fn e57_file() -> Vec<u8> {
+    e57_scans(&[Some([512_000.0, 5_423_000.0, 0.0])])
+}
+
+/// The same as scans from several places.
+fn e57_scans(places: &[Option<[f64; 3]>]) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
     let mut writer = e57::E57Writer::new(&mut file, "file").unwrap();
-    let records = vec![
-        e57::Record::CARTESIAN_X_F64,
-        e57::Record::CARTESIAN_Y_F64,
-        e57::Record::CARTESIAN_Z_F64,
-        e57::Record::COLOR_RED_U8,
-        e57::Record::COLOR_GREEN_U8,
-        e57::Record::COLOR_BLUE_U8,
-    ];
-    let mut cloud = writer.add_pointcloud("cloud", records).unwrap();
-    cloud.set_transform(Some(e57::Transform {
-        rotation: e57::Quaternion { w: 1.0, x: 0.0, y: 0.0, z: 0.0 },
-        translation: e57::Translation { x: 512_000.0, y: 5_423_000.0, z: 0.0 },
-    }));
-    for ([x, y, z], grey) in points() {
-        let at = [x - 512_000.0, y - 5_423_000.0, z].map(e57::RecordValue::Double);
-        let color = [grey; 3].map(|part| e57::RecordValue::Integer(i64::from(part)));
-        cloud.add_point(at.into_iter().chain(color).collect()).unwrap();
+    for place in places {
+        let records = vec![
+            e57::Record::CARTESIAN_X_F64,
+            e57::Record::CARTESIAN_Y_F64,
+            e57::Record::CARTESIAN_Z_F64,
+            e57::Record::COLOR_RED_U8,
+            e57::Record::COLOR_GREEN_U8,
+            e57::Record::COLOR_BLUE_U8,
+        ];
+        let mut cloud = writer.add_pointcloud("cloud", records).unwrap();
+        cloud.set_transform(place.map(|[x, y, z]| e57::Transform {
+            rotation: e57::Quaternion { w: 1.0, x: 0.0, y: 0.0, z: 0.0 },
+            translation: e57::Translation { x, y, z },
+        }));
+        for ([x, y, z], grey) in points() {
+            let at = [x - 512_000.0, y - 5_423_000.0, z].map(e57::RecordValue::Double);
+            let color = [grey; 3].map(|part| e57::RecordValue::Integer(i64::from(part)));
+            cloud.add_point(at.into_iter().chain(color).collect()).unwrap();
+        }
+        cloud.finalize().unwrap();
     }
-    cloud.finalize().unwrap();
     writer.finalize().unwrap();
     drop(writer);
     file.into_inner()
@@ -228,4 +235,29 @@ fn feet_are_turned_into_metres_and_work_is_stopped() {
     assert!((feet.low_m[0] - 0.3048 * metres.low_m[0]).abs() < 1e-6);
     let stopped = survey(&path, None, ControlFlow::Break(()));
     assert!(matches!(stopped, Err(SiteError::Cancelled)), "{stopped:?}");
+}
+
+/// A set that was registered has one scan at its origin at most.
+#[test]
+fn scans_that_may_lie_on_top_of_each_other_are_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.e57");
+    let there = Some([512_000.0, 5_423_000.0, 0.0]);
+    let origin = Some([0.0; 3]);
+    for (places, expected) in [
+        (vec![None], None),
+        (vec![there, there], None),
+        (vec![there, None], None),
+        (vec![there, None, origin], Some("2 of its 3 scans stand at the origin")),
+    ] {
+        std::fs::write(&path, e57_scans(&places)).unwrap();
+        let summary =
+            survey_cloud(&path, CloudFormat::E57, None, &mut |_| ControlFlow::Continue(()));
+        let note = summary.unwrap().unit_note;
+        let is_as_expected = match expected {
+            Some(said) => note.as_ref().is_some_and(|note| note.contains(said)),
+            None => note.is_none(),
+        };
+        assert!(is_as_expected, "{places:?}: {note:?}");
+    }
 }
