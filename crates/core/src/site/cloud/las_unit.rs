@@ -96,6 +96,11 @@ impl CloudUnits {
         Ok(Self { plane: unit, height, note })
     }
 
+    /// The name of the unit of its heights.
+    pub fn height_word(&self) -> &'static str {
+        self.height.word()
+    }
+
     /// Easting, northing and height of a point, m.
     pub fn in_metres(&self, [easting, northing, height]: [f64; 3]) -> [f64; 3] {
         let [plane_m, height_m] = [self.plane, self.height].map(LengthUnit::length_m);

@@ -89,6 +89,9 @@ impl CloudSummary {
     }
 }
 
+/// Height beyond which there is no ground, m.
+const HIGHEST_M: f64 = 10_000.0;
+
 /// Reads all points and says what is there.
 ///
 /// - `unit`: of the coordinates of LAS; what the file states, else metres, if `None`. Those of E57 are in metres.
@@ -142,6 +145,15 @@ pub fn survey_cloud(
     }
     if summary.n_points == 0 {
         return Err(damaged(path, &"it has no points with a place"));
+    }
+    let nearest_m = summary.low_m[2].max(-summary.high_m[2]);
+    if nearest_m > HIGHEST_M {
+        let message = format!(
+            "all of its points lie more than {nearest_m:.0} m above or below 0, where no ground is: are its coordinates \
+             geocentric, to be brought into a projected system first, or in another unit than {} (--unit)?",
+            units.height_word()
+        );
+        return Err(damaged(path, &message));
     }
     Ok(summary)
 }

@@ -261,3 +261,12 @@ fn scans_that_may_lie_on_top_of_each_other_are_said() {
         assert!(is_as_expected, "{places:?}: {note:?}");
     }
 }
+
+/// Coordinates about the centre of the earth lie on no plane; their third one is no height.
+#[test]
+fn points_where_no_ground_is_are_refused() {
+    let error = refused(&e57_scans(&[Some([4_000_000.0, 700_000.0, 4_900_000.0])]));
+    assert!(error.contains("more than 4900100 m") && error.contains("geocentric"), "{error}");
+    let error = refused(&e57_scans(&[Some([4_000_000.0, 700_000.0, -4_900_000.0])]));
+    assert!(error.contains("above or below 0"), "{error}");
+}
