@@ -17,6 +17,9 @@ const NAMES: [&str; 5] = ["name", "Name", "NAME", "title", "id"];
 /// Codes of the Mercator projection of web maps.
 const OF_WEB_MAPS: [&str; 5] = ["3857", "3785", "900913", "102100", "102113"];
 
+/// Codes of the systems of receivers and maps, and of those that are within two metres of them: ETRS89, NAD 83.
+const OF_DEGREES: [&str; 7] = ["CRS84", "CRS84h", "4326", "4979", "4258", "4269", "WGS84"];
+
 /// Whether a text that begins like this is GeoJSON.
 ///
 /// - `head`: its beginning, without blanks.
@@ -62,6 +65,14 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
         let expected = "has the coordinates of web maps (EPSG:3857), whose metres are too short by the cosine of the \
                         latitude; export it in degrees (EPSG:4326) or in a grid of the country";
         return Err(wrong(path, None, &expected));
+    }
+    let is_other = !code.is_empty() && !OF_DEGREES.iter().any(|of| of.eq_ignore_ascii_case(code));
+    if let Some(name) = system.as_ref().filter(|_| found.is_geographic && is_other) {
+        found.notes.push(format!(
+            "it states the system {name}, and its coordinates are read as longitude and latitude of WGS 84: of another \
+             datum the place is off by up to some hundred metres, and of a grid it is wrong; export it in degrees of \
+             WGS 84 (EPSG:4326)"
+        ));
     }
     if !found.is_geographic {
         let of = system.map(|name| format!(" of the system {name}")).unwrap_or_default();

@@ -90,6 +90,27 @@ fn the_system_of_a_grid_is_said_and_that_of_web_maps_refused() {
     assert!(error.contains("web maps"), "{error}");
 }
 
+/// Degrees of another datum, here that of the older German maps, lie beside those of receivers.
+#[test]
+fn degrees_of_another_system_are_said() {
+    let notes = |system: &str| {
+        let map = format!(
+            r#"{{"type": "FeatureCollection", "crs": {{"type": "name", "properties": {{"name": "{system}"}}}},
+            "features": [{{"type": "Feature", "properties": {{"name": "edge"}}, "geometry": {{"type": "LineString",
+            "coordinates": [[8.65, 49.87], [8.651, 49.87]]}}}}]}}"#
+        );
+        read("map.geojson", &map).unwrap().notes.join(" ")
+    };
+    let other = notes("urn:ogc:def:crs:EPSG::4314");
+    assert!(
+        other.contains("system urn:ogc:def:crs:EPSG::4314") && other.contains("datum"),
+        "{other}"
+    );
+    for system in ["urn:ogc:def:crs:OGC:1.3:CRS84", "EPSG:4326", "urn:ogc:def:crs:EPSG::4258"] {
+        assert!(!notes(system).contains("datum"), "{system}");
+    }
+}
+
 #[test]
 fn points_of_a_code_of_a_line_are_joined_in_their_order() {
     let text = "name;E [m];N [m];Z;code\n1;512345,5;5423456,5;101,3;KERB1\n\
