@@ -18,18 +18,20 @@ const FAR_M: f64 = 5000.0;
 
 /// What is in doubt, a sentence each.
 ///
-/// - `things`: in metres to the east and to the north.
-pub(super) fn doubts(things: &[Thing]) -> Vec<String> {
+/// - `things`: to the east and to the north;
+/// - `unit_m`: length of the unit of their coordinates, m.
+pub(super) fn doubts(things: &[Thing], unit_m: f64) -> Vec<String> {
     let lines = things.iter().filter(|thing| thing.shape == MapShape::Line);
-    swapped(things).into_iter().chain(lines.filter_map(long_step)).chain(far(things)).collect()
+    let long_steps = lines.filter_map(|line| long_step(line, unit_m));
+    swapped(things, unit_m).into_iter().chain(long_steps).chain(far(things, unit_m)).collect()
 }
 
-fn distance_m(a: &[f64; 2], b: &[f64; 2]) -> f64 {
+fn distance(a: &[f64; 2], b: &[f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-fn swapped(things: &[Thing]) -> Option<String> {
-    let [east_m, north_m] = *things.first()?.at.first()?;
+fn swapped(things: &[Thing], unit_m: f64) -> Option<String> {
+    let [east_m, north_m] = things.first()?.at.first()?.map(|value| value * unit_m);
     let is_swapped = SWAPPED_EASTING_M.contains(&east_m) && SWAPPED_NORTHING_M.contains(&north_m);
     is_swapped.then(|| {
         format!(
@@ -40,9 +42,9 @@ fn swapped(things: &[Thing]) -> Option<String> {
 }
 
 /// A step of a line that is far longer than the others.
-fn long_step(line: &Thing) -> Option<String> {
+fn long_step(line: &Thing, unit_m: f64) -> Option<String> {
     let steps = line.at.iter().zip(line.at.iter().skip(1));
-    let mut steps_m: Vec<f64> = steps.map(|(a, b)| distance_m(a, b)).collect();
+    let mut steps_m: Vec<f64> = steps.map(|(a, b)| unit_m * distance(a, b)).collect();
     steps_m.sort_by(f64::total_cmp);
     let usual_m = *steps_m.get(steps_m.len().checked_sub(1)? / 2)?;
     let longest_m = *steps_m.last()?;
@@ -55,10 +57,10 @@ fn long_step(line: &Thing) -> Option<String> {
     })
 }
 
-fn far(things: &[Thing]) -> Option<String> {
+fn far(things: &[Thing], unit_m: f64) -> Option<String> {
     let first = things.first()?.at.first()?;
     let all = things.iter().flat_map(|thing| &thing.at);
-    let farthest_m = all.map(|at| distance_m(first, at)).fold(0.0, f64::max);
+    let farthest_m = all.map(|at| unit_m * distance(first, at)).fold(0.0, f64::max);
     (farthest_m > FAR_M).then(|| {
         format!("the points lie up to {farthest_m:.0} m from the first one: is the unit right, and are all of one place?")
     })
@@ -80,16 +82,17 @@ mod tests {
     #[test]
     fn slips_of_the_hand_are_told_and_a_survey_is_not() {
         let place = [[512_345.1, 5_423_456.8], [512_347.1, 5_423_460.8], [512_350.2, 5_423_466.1]];
-        assert_eq!(doubts(&[line(&place)]), Vec::<String>::new());
-        let swapped = doubts(&[line(&place.map(|[east, north]| [north, east]))]);
+        assert_eq!(doubts(&[line(&place)], 1.0), Vec::<String>::new());
+        let swapped = doubts(&[line(&place.map(|[east, north]| [north, east]))], 1.0);
         assert!(swapped.len() == 1 && swapped[0].contains("mirrored"), "{swapped:?}");
         let mut typed = place;
         typed[2][0] = 512_850.2;
-        let digit = doubts(&[line(&typed)]);
+        let digit = doubts(&[line(&typed)], 1.0);
         assert!(digit.len() == 1 && digit[0].contains("\"KERB1\" are 503 m apart"), "{digit:?}");
         let in_mm =
             place.map(|[east, north]| [1e3 * (east - 512_300.0), 1e3 * (north - 5_423_400.0)]);
-        let unit = doubts(&[line(&in_mm)]);
+        let unit = doubts(&[line(&in_mm)], 1.0);
         assert!(unit.len() == 1 && unit[0].contains("is the unit right"), "{unit:?}");
+        assert_eq!(doubts(&[line(&in_mm)], 1e-3), Vec::<String>::new());
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::data::{ARCHIVE_START, GeographicPlace, MAX_SURVEY_BYTES, open_file, read_bytes};
 use crate::ranges::SURVEY_COORDINATE;
+use crate::site::survey::doubts::doubts;
 use crate::site::survey::found::{Found, Thing, wrong};
 use crate::site::survey::{geojson, kml, table};
 use crate::site::{
@@ -104,12 +105,16 @@ impl Site {
         };
         let text = decoded(&bytes);
         drop(bytes);
-        let found = match format {
+        let mut found = match format {
             SurveyFormat::Kml | SurveyFormat::Kmz => kml::read(path, &text)?,
             SurveyFormat::GeoJson => geojson::read(path, &text)?,
             SurveyFormat::Table => table::read(path, &text, options)?,
         };
         let frame = Frame::new(path, &found, options)?;
+        // A table has said them already, in its own units.
+        if format == SurveyFormat::GeoJson && frame.place.is_none() {
+            found.notes.extend(doubts(&found.things, frame.unit_m));
+        }
         let mut site = Self::empty(path);
         (site.origin, site.geographic) = (Some(frame.origin), frame.place);
         let Found { things, left_out, notes, .. } = found;

@@ -178,7 +178,7 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
     for line in found.things.iter_mut().filter(|thing| thing.shape == MapShape::Line) {
         line.at.dedup();
     }
-    found.notes.extend(doubts(&found.things));
+    found.notes.extend(doubts(&found.things, 1.0));
     Ok(found)
 }
 

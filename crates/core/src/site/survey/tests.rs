@@ -90,6 +90,17 @@ fn the_system_of_a_grid_is_said_and_that_of_web_maps_refused() {
     assert!(error.contains("web maps"), "{error}");
 }
 
+/// Some systems count to the north first, and programs write their coordinates in that order.
+#[test]
+fn northing_before_easting_is_said_of_a_map_too() {
+    let map = |from: &str, to: &str| {
+        format!(r#"{{"type": "LineString", "coordinates": [[{from}], [{to}]]}}"#)
+    };
+    let said = |map: &str| read("map.geojson", map).unwrap().notes.join(" ").contains("mirrored");
+    assert!(said(&map("5423456.5, 512345.25", "5423456.75, 512355.25")));
+    assert!(!said(&map("512345.25, 5423456.5", "512355.25, 5423456.75")));
+}
+
 /// Degrees of another datum, here that of the older German maps, lie beside those of receivers.
 #[test]
 fn degrees_of_another_system_are_said() {
