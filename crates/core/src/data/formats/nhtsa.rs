@@ -21,7 +21,8 @@
 //!
 //! Columns are counted from 0; vehicle 0 is the barrier, and `LC…` with the axis `XG` one of its load cells. A
 //! curve has the time in seconds and a value in a line, with a tab between them. Read as recorded, without a
-//! filter. A channel is not read if its status says that it failed, or its comment that data are not valid.
+//! filter. A channel is not read if its status says that it failed, its comment that data are not valid, or its unit
+//! that its values are over something else than seconds.
 
 use std::path::{Path, PathBuf};
 
@@ -88,6 +89,8 @@ pub struct TestChannel {
     pub place: String,
     /// Direction of its axis, such as `XG`.
     pub axis: String,
+    /// Unit of what its values are over, `SEC` for a time.
+    pub over: String,
     /// Unit of its values, as in the file.
     pub unit: String,
     /// Status of the data, `AM` as measured.
@@ -100,7 +103,12 @@ impl TestChannel {
     /// Whether its values can be used, as far as the file says.
     pub fn is_valid(&self) -> bool {
         let is_good = matches!(self.status.as_str(), "AM" | "CM" | "");
-        is_good && !self.comment.to_uppercase().contains("NO VALID DATA")
+        is_good && self.is_over_time() && !self.comment.to_uppercase().contains("NO VALID DATA")
+    }
+
+    /// Whether its values are over a time in seconds, and not over a way or an angle.
+    pub(super) fn is_over_time(&self) -> bool {
+        matches!(self.over.as_str(), "SEC" | "")
     }
 
     /// Whether it is the force of a load cell of the barrier along its normal.
@@ -250,6 +258,7 @@ fn channel(path: &Path, line: u64, fields: &[&str]) -> Result<TestChannel, DataE
         occupant: text(3),
         place: text(4),
         axis: text(5),
+        over: text(6),
         unit: text(7),
         status: text(17),
         comment: text(19),

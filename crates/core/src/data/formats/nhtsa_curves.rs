@@ -288,6 +288,7 @@ impl TestChannel {
     fn why_not(&self) -> String {
         match self.comment.to_uppercase().contains("NO VALID DATA") {
             true => plain(&self.comment.chars().take(60).collect::<String>()).to_lowercase(),
+            false if !self.is_over_time() => format!("over {}, no time", plain(&self.over)),
             false => format!("status {}", plain(&self.status)),
         }
     }
@@ -420,6 +421,18 @@ mod tests {
         std::fs::write(&bad, "0.0\t1\n0.1\tx\n").unwrap();
         let error = read_any_series(&path, None).unwrap_err().to_string();
         assert!(error.contains("v1.002:2:2: "), "{error}");
+    }
+
+    /// A force over the way of a slow test is none over time.
+    #[test]
+    fn a_curve_over_a_way_is_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = write(folder.path(), 1.0);
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::write(&path, text.replace("LC0102|XG|SEC", "LC0102|XG|MM")).unwrap();
+        let force = CrashTest::read(&path).unwrap().barrier_force().unwrap().unwrap();
+        assert_eq!(force.left_out.len(), 2, "{:?}", force.left_out);
+        assert!(force.left_out.iter().any(|of| of == "2 (over MM, no time)"), "{force:?}");
     }
 
     #[test]
