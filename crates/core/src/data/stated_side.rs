@@ -27,10 +27,29 @@ const TO_RIGHT: [&str; 8] = [
     "positiveclockwise",
 ];
 
+/// The same in German, with the English words that are looked for.
+const GERMAN: [(&str, &str); 10] = [
+    ("gegendenuhrzeigersinn", "counterclockwise"),
+    ("gegenuhrzeigersinn", "counterclockwise"),
+    ("imuhrzeigersinn", "clockwise"),
+    ("mathematischpositiv", "counterclockwise"),
+    ("linkspositiv", "leftpositive"),
+    ("positivlinks", "positiveleft"),
+    ("positivnachlinks", "positivetoleft"),
+    ("rechtspositiv", "rightpositive"),
+    ("positivrechts", "positiveright"),
+    ("positivnachrechts", "positivetoright"),
+];
+
+/// Letters and digits of a header with one English word for each side.
+fn key_of(text: &str) -> String {
+    let key = letters_and_digits(text).replace("anticlockwise", "counterclockwise");
+    GERMAN.iter().fold(key, |key, (german, english)| key.replace(*german, english))
+}
+
 /// The side to which a column says that it is positive; `None` also where it names both sides, or one to which it is
 /// negative.
 pub(super) fn stated_side(name: &str) -> Option<RecordedSide> {
-    let key_of = |text: &str| letters_and_digits(text).replace("anticlockwise", "counterclockwise");
     // `right positive, left negative` without its comma has `positive left` in it.
     let mut parts = name.split([',', ';', '/', '(', ')']).map(key_of);
     let in_part = parts.find_map(|key| {
@@ -42,7 +61,8 @@ pub(super) fn stated_side(name: &str) -> Option<RecordedSide> {
         let key = key_of(name);
         let others = key.replace("counterclockwise", "");
         let side = one_side(others.len() < key.len(), others.contains("clockwise"));
-        side.filter(|_| !key.contains("negative"))
+        // In German, too.
+        side.filter(|_| !key.contains("negativ"))
     })
 }
 
@@ -61,7 +81,7 @@ pub(super) fn without_side(header: &str) -> Option<(String, RecordedSide)> {
     let parts = || header.split(['(', ')', '[', ']', ',', ';']).skip(1);
     let side = parts().find_map(stated_side)?;
     let is_of_sides =
-        |part: &&str| stated_side(part).is_some() || part.to_lowercase().contains("negative");
+        |part: &&str| stated_side(part).is_some() || part.to_lowercase().contains("negativ");
     let drop = |name: String, part: &str| name.replacen(part, "", 1);
     Some((parts().filter(is_of_sides).fold(header.to_owned(), drop), side))
 }
@@ -101,6 +121,12 @@ mod tests {
             ("left negative, right positive", Some(Right)),
             ("(right positive, left negative)", Some(Right)),
             ("right positive left negative", None),
+            ("links positiv", Some(Left)),
+            ("positiv nach rechts", Some(Right)),
+            ("rechts negativ, links positiv", Some(Left)),
+            ("gegen den Uhrzeigersinn", Some(Left)),
+            ("im Uhrzeigersinn positiv", Some(Right)),
+            ("links negativ", None),
             // Which sign is meant stands in signs, or only that of the negative side is told.
             ("clockwise +, counterclockwise -", None),
             ("clockwise negative", None),
@@ -119,6 +145,8 @@ mod tests {
             ("Yaw Rate (CW positive) [deg/s]", "Yaw Rate () [deg/s]", Right),
             ("Yaw Rate, positive left [deg/s]", "Yaw Rate,[deg/s]", Left),
             ("ay (left negative, right positive) [g]", "ay (,) [g]", Right),
+            ("Gierrate [Grad/s] (rechts positiv)", "Gierrate [Grad/s] ()", Right),
+            ("Gierrate (links positiv) [Grad/s]", "Gierrate () [Grad/s]", Left),
         ] {
             assert_eq!(without_side(header), Some((bare.to_owned(), side)), "{header}");
             assert_eq!(bare_header(header).as_deref(), Some(bare), "{header}");
