@@ -184,20 +184,31 @@ impl RecorderRecord {
 }
 
 /// Whether a column has the speed of the car, and not that of a wheel, of the engine, of another car or of a driver's
-/// wish.
+/// wish, or the part to its side.
 fn is_speed(key: &str) -> bool {
     let others = [
         "deltav", "change", "engine", "motor", "cruise", "setspeed", "acc", "limit", "relative",
-        "target", "lead", "gps",
+        "target", "lead", "gps", "lateral",
     ];
     let is_of_wheel = key.contains("wheel") && !key.contains("vehicle");
     key.contains("speed") && !is_of_wheel && !has(key, &others)
 }
 
-/// Whether a column says if the driver brakes.
+/// Whether a column says if the driver brakes, and not a system for him.
 fn is_brake(key: &str) -> bool {
-    let others =
-        ["abs", "pressure", "park", "hand", "warning", "lamp", "pedalposition", "force", "torque"];
+    let others = [
+        "abs",
+        "pressure",
+        "park",
+        "hand",
+        "warning",
+        "lamp",
+        "pedalposition",
+        "force",
+        "torque",
+        "assist",
+        "emergency",
+    ];
     key.contains("brake") && !has(key, &others)
 }
 

@@ -396,3 +396,14 @@ fn a_side_that_a_column_names_counts() {
     assert!(road.before.steering_wheel_rad.is_empty(), "{road:?}");
     assert!(road.doubts.iter().any(|doubt| doubt.contains("road wheels")), "{road:?}");
 }
+
+/// The part of a velocity to the side and a brake assistant stand before what is wanted in some tables.
+#[test]
+fn a_lateral_speed_and_a_brake_assistant_are_others() {
+    let text = "Time [s],Lateral Speed [km/h],Speed [km/h],Brake Assist,Emergency Brake,Brake\n\
+        -0.5,1,60,Off,Off,Off\n0,2,58,Off,Off,On\n";
+    let record = read(text, None).unwrap();
+    let speed = record.speed_before.unwrap();
+    assert!((speed.speed_m_s - 58.0 / 3.6).abs() < 1e-12, "{record:?}");
+    assert_eq!(record.before.is_braked, [false, true]);
+}
