@@ -612,7 +612,7 @@ fn or_go_on(before_s: f64, after_s: f64) -> &'static str {
 }
 
 /// What a recorder keeps of a driver beside the speed.
-const OF_DRIVER: [&str; 4] = ["brake", "accelerator", "throttle", "steering"];
+const OF_DRIVER: [&str; 6] = ["brake", "brems", "accelerator", "throttle", "steering", "lenkrad"];
 
 /// What helps where columns may be those of a recorder: a change of velocity, which no channel is, or the speed beside
 /// what the driver did, without places, which a log has.
@@ -624,7 +624,7 @@ pub(super) fn or_recorder(found: &[String]) -> &'static str {
     };
     let is_log = has(&["latitude", "longitude"]) || found.iter().any(is_place);
     let is_of_recorder = keys.iter().any(|key| spelling::is_delta_v(key))
-        || has(&["speed"]) && has(&OF_DRIVER) && !is_log;
+        || has(&["speed", "geschwindigkeit"]) && has(&OF_DRIVER) && !is_log;
     match is_of_recorder {
         true => "; a table of an event data recorder is read by: impactlab import --recorder",
         false => "",

@@ -6,9 +6,9 @@
 //! Time [s],Speed [mph],Brake,Steering Wheel Angle [deg],Delta-V, Longitudinal [km/h],Delta-V, Lateral [km/h]
 //! ```
 //!
-//! A column whose header names no unit is left out, and said so. Lateral values and the yaw rate are positive to
-//! the right, as SAE J1698 has them; a steering wheel is positive to the left. A column that names another side is
-//! turned.
+//! A column whose header names no unit is left out, and said so. Headers may be in German. Lateral values and the yaw
+//! rate are positive to the right, as SAE J1698 has them; a steering wheel is positive to the left. A column that
+//! names another side is turned.
 
 use std::borrow::Cow;
 use std::path::Path;

@@ -12,6 +12,59 @@ use crate::units::Quantity;
 /// of which it is the sum.
 pub(super) const NO_RECORD: [&str; 3] = ["maximum", "persample", "changeper"];
 
+/// German words in the letters of a header, with the English ones by which columns are known; those that hold others
+/// come first. A `Lenkwinkel` without more is that of the road wheels.
+const GERMAN: [(&str, &str); 48] = [
+    ("geschwindigkeitsänderung", "deltav"),
+    ("geschwindigkeitsaenderung", "deltav"),
+    ("gierwinkelgeschwindigkeit", "yawrate"),
+    ("giergeschwindigkeit", "yawrate"),
+    ("gierrate", "yawrate"),
+    ("winkelgeschwindigkeit", "anglerate"),
+    ("radgeschwindigkeit", "wheelspeed"),
+    ("raddrehzahl", "wheelspeed"),
+    ("sollgeschwindigkeit", "targetspeed"),
+    ("wunschgeschwindigkeit", "targetspeed"),
+    ("zielgeschwindigkeit", "targetspeed"),
+    ("relativgeschwindigkeit", "relativespeed"),
+    ("quergeschwindigkeit", "lateralspeed"),
+    ("geschwindigkeitsbegrenz", "speedlimit"),
+    ("geschwindigkeit", "speed"),
+    ("vorausfahrend", "lead"),
+    ("vorderfahrzeug", "lead"),
+    ("tempomat", "cruise"),
+    ("längs", "longitudinal"),
+    ("laengs", "longitudinal"),
+    ("quer", "lateral"),
+    ("seitlich", "lateral"),
+    ("lenkradwinkel", "steeringwheelangle"),
+    ("lenkrad", "steeringwheel"),
+    ("lenkwinkel", "roadwheelsteerangle"),
+    ("feststellbrems", "parkbrake"),
+    ("notbrems", "emergencybrake"),
+    ("bremsassist", "brakeassist"),
+    ("bremsdruck", "brakepressure"),
+    ("bremskraft", "brakeforce"),
+    ("bremsmoment", "braketorque"),
+    ("bremspedalstellung", "brakepedalposition"),
+    ("bremspedalweg", "brakepedalposition"),
+    ("bremswarn", "brakewarning"),
+    ("brems", "brake"),
+    ("antiblockier", "antilock"),
+    ("maximal", "maximum"),
+    ("proabtast", "persample"),
+    ("jeabtast", "persample"),
+    ("zeitvor", "timebefore"),
+    ("sekundenvor", "secondsbefore"),
+    ("zeitbiszum", "timeto"),
+    ("zeitbis", "timeto"),
+    ("aufprall", "impact"),
+    ("kollision", "crash"),
+    ("unfall", "crash"),
+    ("zeit", "time"),
+    ("sekunden", "seconds"),
+];
+
 /// The columns of a table: names with units, numbers and texts.
 pub(super) struct Table563<'a> {
     pub header: Vec<String>,
@@ -31,7 +84,9 @@ pub(super) fn is_of_road_wheels(key: &str) -> bool {
 impl Table563<'_> {
     pub(super) fn keys(&self) -> Vec<String> {
         let bare = |name: &String| {
-            letters_and_digits(name.rsplit_once('[').map_or(name.as_str(), |(bare, _)| bare))
+            let name = name.rsplit_once('[').map_or(name.as_str(), |(bare, _)| bare);
+            let key = letters_and_digits(name);
+            GERMAN.iter().fold(key, |key, (german, english)| key.replace(*german, english))
         };
         self.header.iter().map(bare).collect()
     }

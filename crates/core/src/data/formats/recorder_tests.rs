@@ -407,3 +407,33 @@ fn a_lateral_speed_and_a_brake_assistant_are_others() {
     assert!((speed.speed_m_s - 58.0 / 3.6).abs() < 1e-12, "{record:?}");
     assert_eq!(record.before.is_braked, [false, true]);
 }
+
+/// Headers as a German workshop writes them, with the columns that are not meant before those that are.
+#[test]
+fn headers_in_german_are_read() {
+    let text = "Zeit vor Kollision [s];Quergeschwindigkeit [km/h];Radgeschwindigkeit vorne links [km/h];\
+        Fahrzeuggeschwindigkeit [km/h];Bremsassistent;Feststellbremse;Betriebsbremse;\
+        Lenkradwinkel (rechts positiv) [Grad];Gierrate [Grad/s]\n\
+        1,0;1;70;60;aus;aus;aus;10;2\n0,5;1;70;58;aus;aus;ein;20;4\n0,0;1;70;50;aus;aus;ein;20;4\n";
+    let record = read(text, None).unwrap();
+    let speed = record.speed_before.unwrap();
+    assert!((speed.speed_m_s - 50.0 / 3.6).abs() < 1e-12 && speed.at_s == 0.0, "{record:?}");
+    assert_eq!(record.before.time_s, [-1.0, -0.5, 0.0]);
+    assert_eq!(record.before.is_braked, [false, true, true]);
+    assert!((record.before.steering_wheel_rad[2] + 20_f64.to_radians()).abs() < 1e-12);
+    assert!((record.before.yaw_rate_right_rad_s[2] - 4_f64.to_radians()).abs() < 1e-12);
+    let delta_v = |header: &str| {
+        let rows: String = (0..12).map(|at| format!("{};{};{}\n", 10 * at, -4 * at, -at)).collect();
+        let record = read(&format!("{header}\n{rows}"), None).unwrap();
+        (record.delta_v_ahead, record.delta_v_right)
+    };
+    let english = delta_v("Time [ms];Delta-V longitudinal [km/h];Delta-V lateral [km/h]");
+    assert!(english.0.is_some() && english.1.is_some(), "{english:?}");
+    for [ahead, right] in [
+        ["Delta-V l\u{e4}ngs", "Delta-V quer"],
+        ["Geschwindigkeits\u{e4}nderung l\u{e4}ngs", "Geschwindigkeitsaenderung seitlich"],
+    ] {
+        let german = delta_v(&format!("Zeit [ms];{ahead} [km/h];{right} [km/h]"));
+        assert_eq!(german, english, "{ahead}");
+    }
+}
