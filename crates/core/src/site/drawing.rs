@@ -342,6 +342,10 @@ impl<'a> Reader<'a> {
         let Some(block) = block.filter(|_| is_plain && depth < MAX_DEPTH) else {
             return self.leave_out(layer, "INSERT".to_owned());
         };
+        // What another drawing has stands in its own file.
+        if block.entities.is_empty() && (block.is_xref() || block.is_xref_overlay()) {
+            return self.leave_out(layer, "INSERT of another drawing".to_owned());
+        }
         let Some(mirror) = mirror(&insert.extrusion_direction) else {
             return self.leave_out(layer, "INSERT".to_owned());
         };

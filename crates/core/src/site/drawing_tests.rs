@@ -135,6 +135,24 @@ fn blocks_are_turned_scaled_and_placed() {
     assert!(circle.iter().all(|p| ((p[0] - 8.0).hypot(p[1] - 20.0) - 1.0).abs() < 1e-9));
 }
 
+/// A drawing that refers to others, as to the survey below a plan, has only their names.
+#[test]
+fn a_drawing_within_a_drawing_is_counted() {
+    let mut drawing = dxf::Drawing::new();
+    drawing.header.version = AcadVersion::R2010;
+    drawing.header.default_drawing_units = Units::Meters;
+    let mut base = dxf::Block { name: "BASE".to_owned(), ..Default::default() };
+    base.set_is_xref(true);
+    base.xref_path_name = "base.dwg".to_owned();
+    drawing.add_block(base);
+    let insert = Insert { name: "BASE".to_owned(), ..Insert::default() };
+    drawing.add_entity(on("0", EntityType::Insert(insert)));
+    drawing.add_entity(on("KERB", line([0.0, 0.0], [10.0, 0.0])));
+    let (_folder, file) = saved(&drawing);
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
+    assert_eq!(read.left_out.get("INSERT of another drawing"), Some(&1), "{:?}", read.left_out);
+}
+
 #[test]
 fn what_is_off_frozen_or_invisible_is_neither_drawn_nor_counted() {
     let mut drawing = dxf::Drawing::new();
