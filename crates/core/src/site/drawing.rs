@@ -18,6 +18,7 @@ use crate::ranges::SURVEY_COORDINATE;
 use crate::site::drawing_curves::{arc, bulged, spline};
 use crate::site::frozen_layers::frozen_layers;
 use crate::site::parts::{extent_of, extent_text};
+use crate::site::unread_entities::unread_entities;
 use crate::site::{DrawingFile, LengthUnit, SiteError, SiteOrigin};
 use crate::units::UnitSystem;
 
@@ -153,6 +154,9 @@ pub fn read_drawing(file: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, 
     reader.chord_error = CHORD_ERROR_M / unit_m;
     let whole = Placed { along: [1.0, 0.0], across: [0.0, 1.0], at: [0.0; 2] };
     reader.entities(drawing.entities(), &whole, None, 0);
+    for (layer, kind) in unread_entities(&bytes) {
+        reader.leave_out(&layer, kind);
+    }
     if reader.n_points > MAX_DRAWING_POINTS {
         return Err(SiteError::TooManyPoints { path: path.to_owned(), limit: MAX_DRAWING_POINTS });
     }

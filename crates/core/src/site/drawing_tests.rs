@@ -135,6 +135,26 @@ fn blocks_are_turned_scaled_and_placed() {
     assert!(circle.iter().all(|p| ((p[0] - 8.0).hypot(p[1] - 20.0) - 1.0).abs() < 1e-9));
 }
 
+/// Programs for roads write kinds of their own, which the reader of drawings passes over.
+#[test]
+fn kinds_of_other_programs_are_counted_on_layers_that_are_shown() {
+    let mut drawing = dxf::Drawing::new();
+    drawing.header.version = AcadVersion::R2010;
+    drawing.header.default_drawing_units = Units::Meters;
+    drawing.add_entity(on("KERB", line([0.0, 0.0], [10.0, 0.0])));
+    let (_folder, mut file) = saved(&drawing);
+    let text = std::fs::read_to_string(&file.file).unwrap().replace("\r\n", "\n");
+    let at = text.find("ENTITIES\n").unwrap() + "ENTITIES\n".len();
+    let (head, rest) = text.split_at(at);
+    let feature = "  0\nAECC_FEATURE_LINE\n  8\nROAD\n";
+    std::fs::write(&file.file, format!("{head}{feature}{rest}")).unwrap();
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
+    assert_eq!((read.lines.len(), read.left_out.get("AECC_FEATURE_LINE")), (1, Some(&1)));
+    file.layers = Some(vec!["KERB".to_owned()]);
+    let read = read_drawing(&file, &SiteOrigin::default()).unwrap();
+    assert!(read.left_out.is_empty(), "{:?}", read.left_out);
+}
+
 /// A drawing that refers to others, as to the survey below a plan, has only their names.
 #[test]
 fn a_drawing_within_a_drawing_is_counted() {

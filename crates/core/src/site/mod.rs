@@ -28,6 +28,7 @@ mod drawing;
 mod drawing_curves;
 mod frozen_layers;
 mod picture;
+mod unread_entities;
 
 mod cloud;
 mod survey;
