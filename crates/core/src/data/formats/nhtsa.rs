@@ -35,6 +35,9 @@ pub(super) const MAX_CURVE_BYTES: u64 = 32 << 20;
 /// Channels of a test; those with the largest barriers have some 700.
 const MAX_CHANNELS: usize = 4096;
 
+/// Words of remarks that data are not to be used.
+const NOT_VALID: [&str; 5] = ["NO VALID DATA", "NOT VALID", "INVALID", "FAILED", "NO DATA"];
+
 /// A crash test of the database.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrashTest {
@@ -103,7 +106,13 @@ impl TestChannel {
     /// Whether its values can be used, as far as the file says.
     pub fn is_valid(&self) -> bool {
         let is_good = matches!(self.status.as_str(), "AM" | "CM" | "");
-        is_good && self.is_over_time() && !self.comment.to_uppercase().contains("NO VALID DATA")
+        is_good && self.is_over_time() && !self.is_remarked()
+    }
+
+    /// Whether its remark says that data are not to be used, mostly from an instant on.
+    pub(super) fn is_remarked(&self) -> bool {
+        let comment = self.comment.to_uppercase();
+        NOT_VALID.iter().any(|words| comment.contains(*words))
     }
 
     /// Whether its values are over a time in seconds, and not over a way or an angle.

@@ -286,7 +286,7 @@ impl CrashTest {
 
 impl TestChannel {
     fn why_not(&self) -> String {
-        match self.comment.to_uppercase().contains("NO VALID DATA") {
+        match self.is_remarked() {
             true => plain(&self.comment.chars().take(60).collect::<String>()).to_lowercase(),
             false if !self.is_over_time() => format!("over {}, no time", plain(&self.over)),
             false => format!("status {}", plain(&self.status)),
@@ -421,6 +421,25 @@ mod tests {
         std::fs::write(&bad, "0.0\t1\n0.1\tx\n").unwrap();
         let error = read_any_series(&path, None).unwrap_err().to_string();
         assert!(error.contains("v1.002:2:2: "), "{error}");
+    }
+
+    /// Laboratories say it in their own words, and leave the status as measured.
+    #[test]
+    fn a_curve_whose_remark_says_that_it_failed_is_left_out() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = write(folder.path(), 1.0);
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (remark, n_left_out) in [
+            ("B-03: data not valid after 60 ms", 1),
+            ("B-03: INVALID AFTER 60 MSEC", 1),
+            ("B-03: channel failed at 40 ms", 1),
+            ("B-03: no data", 1),
+            ("B-03", 0),
+        ] {
+            std::fs::write(&path, text.replace("B-03: No valid data after 20ms", remark)).unwrap();
+            let force = CrashTest::read(&path).unwrap().barrier_force().unwrap().unwrap();
+            assert_eq!(force.left_out.len(), n_left_out, "{remark}: {:?}", force.left_out);
+        }
     }
 
     /// A force over the way of a slow test is none over time.
