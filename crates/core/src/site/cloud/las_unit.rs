@@ -181,16 +181,30 @@ fn stated(path: &Path) -> Stated {
     read.ok().flatten().unwrap_or_default()
 }
 
-/// What an E57 file states of its coordinate system, which few do, and what is said of its scans.
+/// What an E57 file states of its coordinate system, which few do, and what is said of that and of its scans.
 fn of_e57(path: &Path) -> (Stated, Option<String>) {
     // As above, of the other reader.
     let read = catch_unwind(AssertUnwindSafe(|| {
         let (file, _) = open_file(path, MAX_CLOUD_BYTES).ok()?;
         let reader = E57Reader::new(BufReader::new(file)).ok()?;
         let stated = reader.coordinate_metadata().map(of_wkt).unwrap_or_default();
-        Some((stated, not_registered(&reader.pointclouds())))
+        let notes = [other_unit(stated), not_registered(&reader.pointclouds())];
+        let notes: Vec<String> = notes.into_iter().flatten().collect();
+        Some((stated, (!notes.is_empty()).then(|| notes.join("; "))))
     }));
     read.ok().flatten().unwrap_or_default()
+}
+
+/// That the coordinate system of E57, which has metres, is in another unit.
+fn other_unit(stated: Stated) -> Option<String> {
+    let Some(StatedUnit::Length(unit)) = stated.plane else { return None };
+    let word = unit.word();
+    (unit != LengthUnit::Metre).then(|| {
+        format!(
+            "its coordinate system is in {word}, while E57 has metres, as which its coordinates were taken: if it was \
+             written in {word}, write it again in metres"
+        )
+    })
 }
 
 /// That several scans stand at the origin, as those of a scanner before they are brought into one system.

@@ -54,8 +54,14 @@ fn e57_file() -> Vec<u8> {
 
 /// The same as scans from several places.
 fn e57_scans(places: &[Option<[f64; 3]>]) -> Vec<u8> {
+    e57_in_system(places, None)
+}
+
+/// The same with the coordinate system that the file states.
+fn e57_in_system(places: &[Option<[f64; 3]>], system: Option<&str>) -> Vec<u8> {
     let mut file = Cursor::new(Vec::new());
     let mut writer = e57::E57Writer::new(&mut file, "file").unwrap();
+    writer.set_coordinate_metadata(system.map(str::to_owned));
     for place in places {
         let records = vec![
             e57::Record::CARTESIAN_X_F64,
@@ -269,4 +275,24 @@ fn points_where_no_ground_is_are_refused() {
     assert!(error.contains("more than 4900100 m") && error.contains("geocentric"), "{error}");
     let error = refused(&e57_scans(&[Some([4_000_000.0, 700_000.0, -4_900_000.0])]));
     assert!(error.contains("above or below 0"), "{error}");
+}
+
+/// Some programs write E57 in the feet of its system, against the format.
+#[test]
+fn a_system_of_e57_in_feet_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scan.e57");
+    for (unit, expected) in [("\"metre\",1", None), ("\"foot\",0.3048", Some("written in ft"))] {
+        let system = format!("PROJCS[\"a\",GEOGCS[\"b\"],PROJECTION[\"Lambert\"],UNIT[{unit}]]");
+        let place = [Some([512_000.0, 5_423_000.0, 0.0])];
+        std::fs::write(&path, e57_in_system(&place, Some(&system))).unwrap();
+        let summary =
+            survey_cloud(&path, CloudFormat::E57, None, &mut |_| ControlFlow::Continue(()));
+        let note = summary.unwrap().unit_note;
+        let is_as_expected = match expected {
+            Some(said) => note.as_ref().is_some_and(|note| note.contains(said)),
+            None => note.is_none(),
+        };
+        assert!(is_as_expected, "{unit}: {note:?}");
+    }
 }
