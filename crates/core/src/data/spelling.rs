@@ -307,7 +307,9 @@ pub(crate) fn letters_and_digits(text: &str) -> String {
 
 /// Whether letters and digits of a header name a change of velocity.
 pub(crate) fn is_delta_v(key: &str) -> bool {
-    ["deltav", "δv", "velocitychange"].iter().any(|word| key.contains(word))
+    let words =
+        ["deltav", "δv", "velocitychange", "geschwindigkeitsänderung", "geschwindigkeitsaenderung"];
+    words.iter().any(|word| key.contains(word))
 }
 
 /// Reduces a unit to one spelling, so that `m/s²`, `m/s^2`, `m_s2` and `m/sec2` are equal, and so

@@ -437,3 +437,18 @@ fn headers_in_german_are_read() {
         assert_eq!(german, english, "{ahead}");
     }
 }
+
+/// Such a table is opened as that of a recorder without being told.
+#[test]
+fn a_change_of_velocity_in_german_makes_a_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("edr.csv");
+    for (header, expected) in [
+        ("Zeit [ms];Geschwindigkeits\u{e4}nderung l\u{e4}ngs [km/h]", true),
+        ("Zeit [ms];Delta-V l\u{e4}ngs [km/h]", true),
+        ("Zeit [ms];Geschwindigkeit [km/h]", false),
+    ] {
+        std::fs::write(&path, format!("{header}\n0;0\n10;-4\n20;-8\n")).unwrap();
+        assert_eq!(RecorderRecord::is_record(&path), expected, "{header}");
+    }
+}
