@@ -10,10 +10,12 @@ use impactlab_core::units::{Phrase, Quantity, UnitSystem};
 use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{Ending, PitEnd, VehicleParameters};
 
-/// Masses of the cars of the plan, kg, and by how much the striking car is faster along the lane in it, m/s:
-/// what the cells are averaged over, and beyond which they say nothing of a case.
+/// Masses of the cars of the plan, kg, by how much the striking car is faster along the lane in it, m/s, and how
+/// far its heading is beyond its way, rad: what the cells are averaged over, and beyond which they say nothing
+/// of a case.
 const MASSES_KG: [f64; 2] = [1400.0, 2600.0];
 const FASTER_M_S: [f64; 2] = [0.0, 3.0];
+const SLIP_RAD: [f64; 2] = [-0.1, 0.1];
 
 /// Greatest angle between the headings of a PIT, rad.
 const MOST_ANGLE_RAD: f64 = FRAC_PI_3;
@@ -211,10 +213,15 @@ impl CasePlace {
         };
         let [struck, striking] = self.masses_kg;
         let faster = self.value(PitInput::Faster.name());
+        // Where the angle is an axis, it is held as any other.
+        let is_axis = |input: PitInput| atlas.axis(input.name()).is_some();
+        let has_angle = is_axis(PitInput::Angle) || is_axis(PitInput::Slip);
+        let slip = self.value(PitInput::Slip.name()).filter(|_| !has_angle);
         let averaged = [
             ("Mass of the struck car", Quantity::Mass, Some(struck), MASSES_KG),
             ("Mass of the striking car", Quantity::Mass, Some(striking), MASSES_KG),
             ("Speed above that of the struck car", Quantity::Speed, faster, FASTER_M_S),
+            ("Heading of the striking car beyond its way", Quantity::Angle, slip, SLIP_RAD),
         ];
         let of_averaged =
             |(label, quantity, value, ends): (&str, Quantity, Option<f64>, [f64; 2])| {
@@ -299,6 +306,25 @@ mod tests {
         assert_eq!(input(15.0).text(UnitSystem::Si), text);
     }
 
+    /// Every row drives as it points, and a car that slid was told of as lying within.
+    #[test]
+    fn a_striking_car_that_does_not_drive_as_it_points_is_outside() {
+        let (atlas, struck) = (Atlas::shipped().unwrap(), Preset::Reference.parameters());
+        let mut scenario = Scenario::example();
+        for state in [&mut scenario.struck, &mut scenario.striking] {
+            state.vx_world_m_s += 10.0;
+        }
+        let way_rad = scenario.striking.vy_world_m_s.atan2(scenario.striking.vx_world_m_s);
+        for (slip_rad, is_outside) in [(0.0, false), (0.09, false), (0.11, true), (-0.11, true)] {
+            scenario.striking.heading_rad = way_rad + slip_rad;
+            let place = place_of_case(&scenario, &struck).unwrap();
+            let told = place.outside(atlas, UnitSystem::Si);
+            let expected = "Heading of the striking car beyond its way";
+            let is_told = told.iter().any(|text| text.starts_with(expected));
+            assert_eq!((is_told, !told.is_empty()), (is_outside, is_outside), "{told:?}");
+        }
+    }
+
     /// What the cells are averaged over is what the shipped plans say, and their pairs are the labels.
     #[test]
     fn the_limits_are_those_of_the_shipped_plans() {
@@ -315,6 +341,7 @@ mod tests {
                 list.iter().map(number).collect()
             };
             assert_eq!(numbers("faster_m_s", "uniform"), FASTER_M_S);
+            assert_eq!(numbers("slip_rad", "uniform"), SLIP_RAD);
             for axis in Axis::pit().unwrap() {
                 if axis.is_choice() {
                     assert_eq!(numbers(&axis.name, "list").len(), axis.labels.len());

@@ -239,6 +239,12 @@ mod tests {
         let expected =
             "Geschwindigkeit des gestoßenen Fahrzeugs: 54,00 km/h, der Atlas reicht von 72,00 km/h";
         assert!(told.contains(expected) && !told.contains("the map"), "{told}");
+        let mut slides = scenario;
+        slides.striking.heading_rad += 0.3;
+        let wide = atlas([10.0, 30.0]);
+        let told = format!("{:?}", of_case(&wide, &slides, &struck, &wording).blocks);
+        let expected = "zur Längsachse des stoßenden Fahrzeugs: 17,19°, der Atlas reicht von";
+        assert!(told.contains(expected), "{told}");
     }
 
     /// It held every axis, and every row of the table was “too few”.
@@ -249,6 +255,8 @@ mod tests {
         for state in [&mut scenario.struck, &mut scenario.striking] {
             state.vx_world_m_s += 10.0;
         }
+        let [vx_m_s, vy_m_s] = [scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s];
+        scenario.striking.heading_rad = vy_m_s.atan2(vx_m_s);
         let wording = Wording::english(UnitSystem::Si);
         let told = of_case(Atlas::shipped().unwrap(), &scenario, &struck, &wording);
         let text = format!("{:?}", told.blocks);

@@ -102,6 +102,10 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("Mass of the struck car", "Masse des gestoßenen Fahrzeugs"),
     ("Mass of the striking car", "Masse des stoßenden Fahrzeugs"),
     ("Speed above that of the struck car", "Geschwindigkeit über der des gestoßenen Fahrzeugs"),
+    (
+        "Heading of the striking car beyond its way",
+        "Winkel von der Bewegungsrichtung zur Längsachse des stoßenden Fahrzeugs",
+    ),
     // How a publication is described.
     ("2nd ed.", "2. Aufl."),
     ("dissertation", "Dissertation"),
