@@ -191,6 +191,12 @@ fn a_plan_that_is_wrong_is_refused_with_its_place() {
         ("list = [0, 1]", "list = [0, 2]", "a list of whole numbers, 0 to 1"),
         ("limit_s = 20", "limit_s = 1000", "plan.toml:9:11: pit.limit_s is 1000"),
         ("toyota-camry-2018", "camry", "not \"camry\""),
+        // Every row had the first pair.
+        (
+            "pairs = [",
+            "pairs = [{ struck = \"toyota-rav4-2019\", striking = \"ford-explorer-2020\" }, ",
+            "plan.toml:10:9: pit.pairs",
+        ),
         ("n = 10", "n = 0", "plan.toml:3:5: n is 0, expected 1 to"),
         ("pit-right-rear", "carpenter-welcher-barrier", "plan.toml:8:12: pit.scenario"),
     ] {
@@ -363,6 +369,10 @@ fn a_plan_of_another_program_or_of_another_file_is_not_run() {
     fs::write(&path, plan.to_string()).unwrap();
     let said = error(&["status", shown(&sweep)]);
     assert!(said.contains("plan.json: is no plan of a sweep: chunk"), "{said}");
+    // The usual car took the place of one that nobody knows.
+    fs::write(&path, text.replace("toyota-camry-2018", "camry")).unwrap();
+    let said = error(&["run", shown(&sweep), "--chunk", "0"]);
+    assert!(said.contains("plan.json: is no plan of a sweep: pit.pairs"), "{said}");
     fs::write(&path, &text).unwrap();
     let said = error(&["run", shown(&sweep), "--chunk", "4"]);
     assert!(said.contains("there is no chunk 4"), "{said}");

@@ -18,6 +18,7 @@ use impactlab_core::collision::Scenario;
 use impactlab_core::data::{Existing, MAX_SETTINGS_BYTES, read_utf8, write_atomically};
 use impactlab_core::numerics::{random_stream, sha256_hex};
 use impactlab_core::program;
+use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_study::case_file::UsedFile;
 use impactlab_study::{Library, ModelChoice, Request};
 
@@ -357,7 +358,27 @@ impl Plan {
         if self.vary.is_empty() {
             return Some(("vary".to_owned(), "at least one input that varies".to_owned()));
         }
-        self.vary.iter().find_map(|vary| self.fault_of(vary)).or_else(|| self.fault_of_names())
+        let of_inputs = || self.vary.iter().find_map(|vary| self.fault_of(vary));
+        self.fault_of_pairs().or_else(of_inputs).or_else(|| self.fault_of_names())
+    }
+
+    /// Pairs of vehicles that nobody knows, or of which every row would have the first.
+    fn fault_of_pairs(&self) -> Option<(String, String)> {
+        let SweptQuestion::Pit(pit) = &self.question else { return None };
+        let mut ids = pit.pairs.iter().flat_map(|pair| [&pair.struck, &pair.striking]);
+        let expected = match ids.find(|id| built_in_vehicle(id).is_none()) {
+            Some(id) => format!("vehicles that impactlab vehicles lists, not {id:?}"),
+            None if pit.pairs.len() < 2 || self.varies(PitInput::Pair) => return None,
+            None => {
+                "one pair, or [vary.pair] with a list of places in it: every row would have the first"
+                    .to_owned()
+            }
+        };
+        Some(("pit.pairs".to_owned(), expected))
+    }
+
+    fn varies(&self, input: PitInput) -> bool {
+        self.vary.iter().any(|vary| vary.name == input.name())
     }
 
     fn fault_of(&self, vary: &Vary) -> Option<(String, String)> {
@@ -408,8 +429,7 @@ impl Plan {
             }
             return self.fault_of_places(request);
         }
-        let varies = |input: PitInput| self.vary.iter().any(|vary| vary.name == input.name());
-        (varies(PitInput::Angle) && varies(PitInput::Slip)).then(|| {
+        (self.varies(PitInput::Angle) && self.varies(PitInput::Slip)).then(|| {
             let slip = format!("vary.{}", PitInput::Slip.name());
             (slip, format!("not beside {}, which follows from it", PitInput::Angle.name()))
         })

@@ -242,14 +242,6 @@ impl PitFile {
             let expected = "a scenario whose contact is on the left or right side, from = \"side\"";
             return Err(file.wrong_value("pit.scenario", name, expected).into());
         }
-        for pair in &self.pairs {
-            for id in [&pair.struck, &pair.striking] {
-                if built_in_vehicle(id).is_none() {
-                    let expected = format!("vehicles that impactlab vehicles lists, not {id:?}");
-                    return Err(file.wrong_value("pit.pairs", id, &expected).into());
-                }
-            }
-        }
         let limit_s = self.limit_s.unwrap_or(DEFAULT_LIMIT_S);
         if !REST_LIMIT.contains(limit_s) {
             return Err(out_of_range(file, "pit.limit_s", limit_s, &REST_LIMIT.expected_si()));
