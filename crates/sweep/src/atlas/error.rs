@@ -66,6 +66,19 @@ pub enum AtlasError {
         /// The column.
         name: String,
     },
+    /// The edges of an axis are of another quantity than the column of the rows.
+    #[error(
+        "axis {name:?} is in {axis:?} and the rows have it in {rows:?}; write its edges in {rows:?}, or in \
+         another unit of the same quantity"
+    )]
+    OtherUnit {
+        /// The axis.
+        name: String,
+        /// Its SI unit.
+        axis: String,
+        /// The unit of the rows.
+        rows: String,
+    },
     /// A column has another number of rows than there are.
     #[error("column {name:?} has {got} rows, expected {expected}")]
     ColumnLength {

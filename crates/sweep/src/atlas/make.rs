@@ -60,7 +60,7 @@ impl AtlasBuilder {
     /// Adds rows of the same plan.
     ///
     /// # Errors
-    /// [`AtlasError`] if columns are missing or of other lengths, if the rows come from another plan,
+    /// [`AtlasError`] if columns are missing, of other lengths or units, if the rows come from another plan,
     /// program or network than those before or are there already, if they share their inputs, or if an outcome
     /// is infinite.
     pub fn add(&mut self, rows: &Rows) -> Result<(), AtlasError> {
@@ -73,7 +73,7 @@ impl AtlasBuilder {
             .atlas
             .axes
             .iter()
-            .map(|axis| column(&rows.inputs, &axis.name, n))
+            .map(|axis| input(&rows.inputs, axis, n))
             .collect::<Result<_, _>>()?;
         let outcomes: Vec<&Column> = Outcome::ALL
             .iter()
@@ -132,7 +132,7 @@ impl AtlasBuilder {
     /// vary in them, [`AtlasError::Mixed`] if another program or network computed them.
     pub fn add_sensitivity(&mut self, rows: &Rows) -> Result<(), AtlasError> {
         for axis in &self.atlas.axes {
-            column(&rows.inputs, &axis.name, rows.index.len())?;
+            input(&rows.inputs, axis, rows.index.len())?;
         }
         if !self.seen.is_empty() {
             self.check_program(rows)?;
@@ -241,6 +241,16 @@ fn add_row(cell: &mut Cell, row: u64, values: &[f64]) -> Result<(), AtlasError> 
     cell.n_rows += 1;
     cell.n_inside += u64::from(applies(Outcome::ForceApplies) && applies(Outcome::ResponseApplies));
     Ok(())
+}
+
+/// The column of an axis, in its unit.
+fn input<'a>(columns: &'a [Column], axis: &Axis, n: usize) -> Result<&'a Column, AtlasError> {
+    let found = column(columns, &axis.name, n)?;
+    if found.unit != axis.unit {
+        let (name, axis, rows) = (axis.name.clone(), axis.unit.clone(), found.unit.clone());
+        return Err(AtlasError::OtherUnit { name, axis, rows });
+    }
+    Ok(found)
 }
 
 /// A column with as many values as there are rows.
@@ -402,5 +412,19 @@ mod tests {
         short.inputs.pop();
         let refused = Atlas::from_rows(&short, axes(1));
         assert!(matches!(refused, Err(AtlasError::NoColumn { .. })), "{refused:?}");
+    }
+
+    /// Edges of 20 to 30 without a unit were taken as m/s, whatever they were meant as.
+    #[test]
+    fn axes_are_of_the_quantity_of_their_columns() {
+        for unit in ["1", "m"] {
+            let mut axes = axes(1);
+            axes[0].unit = unit.to_owned();
+            let refused = Atlas::from_rows(&rows(50), axes);
+            assert!(
+                matches!(&refused, Err(AtlasError::OtherUnit { rows, .. }) if rows == "m/s"),
+                "{refused:?}"
+            );
+        }
     }
 }

@@ -194,7 +194,7 @@ mod tests {
         let n = 200_u64;
         let column = |name: &str, at: &dyn Fn(f64) -> f64| Column {
             name: name.to_owned(),
-            unit: "1".to_owned(),
+            unit: PitInput::from_name(name).map_or("1", PitInput::unit).to_owned(),
             values: (0..n).map(|i| at((i as f64 + 0.5) / n as f64)).collect(),
         };
         let between = |[low, high]: [f64; 2]| move |share: f64| low + share * (high - low);
