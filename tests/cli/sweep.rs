@@ -243,6 +243,18 @@ list = [0.5, 0.9, 50]
     let out = folder.path().join("bad");
     let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
     assert!(said.contains("bad.toml:9:6: vary.friction.at") && said.contains("JSON"), "{said}");
+    for (line, instead, place) in [
+        ("unit = \"m\"", "unit = \"ft\"", "bad.toml:7:12: request.outcomes"),
+        (
+            "at = \"/friction\"",
+            "at = \"/friction\"\nunit = \"%\"",
+            "bad.toml:10:8: vary.friction.unit",
+        ),
+    ] {
+        fs::write(&bad, plan.replace(line, instead)).unwrap();
+        let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
+        assert!(said.contains(place) && said.contains("are in SI units"), "{said}");
+    }
     // Two values for one place: one of the columns would say what no row has.
     let again = "[vary.again]\nat = \"/friction\"\nlist = [0.6]\n[vary.friction]";
     fs::write(&bad, plan.replace("[vary.friction]", again)).unwrap();

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use crate::pit::PitInput;
 use crate::points::point;
-use crate::vary::{Distribution, InputValue, Vary, listed};
+use crate::vary::{Distribution, InputValue, Vary, listed, unit_fault};
 use crate::{Outcome, SweepError};
 use impactlab_core::collision::Scenario;
 use impactlab_core::data::{Existing, MAX_SETTINGS_BYTES, read_utf8, write_atomically};
@@ -393,6 +393,9 @@ impl Plan {
         if self.design == Design::Grid && (list.is_none() || !weights.is_empty()) {
             return Some((key, "list or steps, without weights: this is a grid".to_owned()));
         }
+        if let Some(expected) = unit_fault(&vary.unit) {
+            return Some((format!("{key}.unit"), expected));
+        }
         match &self.question {
             SweptQuestion::Pit(pit) => pit.fault_of(vary).map(|expected| (key, expected)),
             SweptQuestion::Request(_) if vary.at.is_empty() => {
@@ -420,6 +423,9 @@ impl Plan {
                 let expected = "a name that no other column has".to_owned();
                 return Some((format!("vary.{name}"), expected));
             }
+        }
+        if let Some(expected) = outcomes.iter().find_map(|(_, unit)| unit_fault(unit)) {
+            return Some(("request.outcomes".to_owned(), expected));
         }
         if let SweptQuestion::Request(request) = &self.question {
             let is_missing = |at: &&String| request.request.pointer(at).is_none();

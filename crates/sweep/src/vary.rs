@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use impactlab_core::numerics::{TruncatedNormal, index_of_share};
+use impactlab_core::units::Quantity;
 
 /// A varied input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -221,6 +222,22 @@ fn share_idx(share: f64, n: usize, weights: &[f64]) -> usize {
     index_of_share(weights.iter().copied(), share * total)
 }
 
+/// What is expected in place of a unit that numbers of requests and answers are not in; `None` for an SI unit, and
+/// for one of a quantity that the program does not know.
+pub(crate) fn unit_fault(unit: &str) -> Option<String> {
+    if Quantity::from_si_symbol(unit).is_some() {
+        return None;
+    }
+    let is_called = |quantity: &&Quantity| quantity.units().iter().any(|it| it.symbol == unit);
+    let si_of = |quantity: &Quantity| match quantity.si_unit().symbol {
+        "" => "\"1\"".to_owned(),
+        symbol => format!("{symbol:?}"),
+    };
+    let si: Vec<String> = Quantity::ALL.iter().filter(is_called).map(si_of).collect();
+    let expected = || format!("{}: requests and answers are in SI units", si.join(" or "));
+    (!si.is_empty()).then(expected)
+}
+
 fn list_fault(values: &[Value], weights: &[f64]) -> Option<String> {
     let is_plain = |value: &Value| value.is_number() || value.is_string() || value.is_boolean();
     if values.is_empty() || !values.iter().all(is_plain) {
@@ -275,6 +292,19 @@ mod tests {
         };
         assert_eq!(words.at(0.7), InputValue { number: 1.0, value: Value::from("b") });
         assert_eq!(words.support(), None);
+    }
+
+    /// A speed in m/s stood in a column of km/h.
+    #[test]
+    fn a_unit_is_that_of_requests_and_answers() {
+        for (unit, si) in [("km/h", "\"m/s\""), ("deg", "\"rad\""), ("%", "\"1\""), ("", "\"1\"")] {
+            assert!(unit_fault(unit).is_some_and(|expected| expected.starts_with(si)), "{unit}");
+        }
+        // That of an acceleration, and of a mass.
+        assert!(unit_fault("g").is_some_and(|it| it.starts_with("\"m/s²\" or \"kg\":")));
+        for unit in ["m/s", "rad", "1", "kg m²", "W"] {
+            assert_eq!(unit_fault(unit), None);
+        }
     }
 
     #[test]
