@@ -72,7 +72,9 @@ impl Plan {
         if self.format != FORMAT_OF_FILES {
             return Ok(self.clone());
         }
-        let absolute = std::path::absolute(folder)
+        // The folder of `plan.json` alone has no letters.
+        let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let absolute = std::path::absolute(here)
             .map_err(|source| SweepError::Input { path: folder.to_owned(), source })?;
         self.with_changed_paths(|value| change(value, &absolute))
             .map_err(|source| SweepError::NoPlan { path: folder.join(PLAN_FILE), source })
@@ -87,5 +89,28 @@ impl Plan {
         change(&mut value);
         let (question, vary, files) = serde_json::from_value(value)?;
         Ok(Self { question, vary, files, ..self.clone() })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::PathBuf;
+
+    use super::*;
+    use impactlab_study::Library;
+
+    /// `run_chunk("plan.json", 0)` of Python failed for plans that read files.
+    #[test]
+    fn a_plan_in_the_working_directory_needs_no_name_of_a_folder() {
+        let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/atlas/pit.toml");
+        let mut plan = Plan::read(&plan, &Library::default()).unwrap();
+        let path = std::env::current_dir().unwrap().join("a.toml");
+        plan.files = vec![UsedFile { path, bytes: 1, sha256: "ab".repeat(32) }];
+        plan.format = FORMAT_OF_FILES;
+        for folder in ["", "."] {
+            let written = plan.with_paths_ended_at(Path::new(folder)).unwrap();
+            assert_eq!(written.files[0].path, PathBuf::from("./a.toml"), "{folder:?}");
+            assert_eq!(written.with_paths_begun_at(Path::new(folder)).unwrap(), plan);
+        }
     }
 }
