@@ -71,7 +71,10 @@ pub enum SweepError {
         n_chunks: u64,
     },
     /// A variable of the job array is missing or no number.
-    #[error("--array: {name} is {value:?}, expected a whole number as Slurm sets it")]
+    #[error(
+        "--array: {name} is {value:?}, expected a whole number as Slurm sets it; with --stride N only \
+         SLURM_ARRAY_TASK_ID is needed"
+    )]
     Array {
         /// The variable.
         name: &'static str,

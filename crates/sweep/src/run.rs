@@ -135,7 +135,8 @@ pub fn run_chunk(folder: &Path, chunk: u64, library: &Library) -> Result<PathBuf
 ///
 /// With a stride n, task t has the chunks t, t + n, t + 2n and so on, whichever other tasks there are.
 /// Without it, the tasks of an array without gaps share all chunks, and each task of an array with gaps,
-/// such as one of missing chunks, has the chunk of its number.
+/// such as one of missing chunks, has the chunk of its number. Without a stride all variables are needed: a task
+/// that knew its own number alone would have every chunk, as each of the others.
 ///
 /// - `variable`: gives the variables that Slurm sets.
 ///
@@ -158,9 +159,9 @@ pub fn chunks_of_task(
     if let Some(stride) = stride {
         return Ok(every(task, stride));
     }
-    let first = number("SLURM_ARRAY_TASK_MIN", Some(task))?;
-    let last = number("SLURM_ARRAY_TASK_MAX", Some(task))?;
-    let count = number("SLURM_ARRAY_TASK_COUNT", Some(1))?.max(1);
+    let first = number("SLURM_ARRAY_TASK_MIN", None)?;
+    let last = number("SLURM_ARRAY_TASK_MAX", None)?;
+    let count = number("SLURM_ARRAY_TASK_COUNT", None)?.max(1);
     let step = number("SLURM_ARRAY_TASK_STEP", Some(1))?.max(1);
     let has_gaps = last.saturating_sub(first) / step + 1 != count;
     match has_gaps {
@@ -208,5 +209,23 @@ mod tests {
     fn without_a_job_array_there_is_no_task() {
         assert!(chunks(None, &[]).is_err());
         assert!(chunks(Some(2), &[("SLURM_ARRAY_TASK_ID", "x")]).is_err());
+    }
+
+    /// Each task of an array of which it knew its number alone computed all chunks; one that knew their count,
+    /// too, left most of them out.
+    #[test]
+    fn a_task_that_does_not_know_its_array_has_no_chunks() {
+        let all = array("2", ["0", "3"], "4");
+        assert_eq!(chunks(None, &all).unwrap(), [2, 6]);
+        for missing in 1..all.len() {
+            let mut some = all.to_vec();
+            let (name, _) = some.remove(missing);
+            let refused = chunks(None, &some);
+            assert!(
+                matches!(&refused, Err(SweepError::Array { name: it, .. }) if *it == name),
+                "{refused:?}"
+            );
+        }
+        assert_eq!(chunks(Some(4), &[("SLURM_ARRAY_TASK_ID", "2")]).unwrap(), [2, 6]);
     }
 }
