@@ -308,6 +308,10 @@ fn the_shipped_atlas_is_of_the_shipped_plans_and_networks() {
     let output = program().args(["atlas", "cell", "--set", "speed=52mph"]).output().unwrap();
     let printed = String::from_utf8(output.stdout).unwrap();
     assert!(printed.contains("more than 60.00 m") && !printed.contains("too few"), "{printed}");
+    // A share of many rows was told as “99.9 % ± 0.0 %”.
+    let output = program().args(["atlas", "cell"]).output().unwrap();
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(printed.contains("% ± 0.1 %") && !printed.contains("% ± 0.0 %"), "{printed}");
 }
 
 #[test]

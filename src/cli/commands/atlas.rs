@@ -12,7 +12,7 @@ use crate::cli::commands::atlas_make::{self, MakeArgs};
 use crate::cli::commands::atlas_slice::{self, SliceArgs};
 use crate::cli::console::{Console, Verdict, print_table};
 use crate::cli::options::UnitsArg;
-use impactlab_core::units::{Quantity, Unit, UnitSystem, percent};
+use impactlab_core::units::{NumberFormat, Quantity, Unit, UnitSystem, percent};
 use impactlab_sweep::Outcome;
 use impactlab_sweep::atlas::{Atlas, Axis, Corridor, Measure, Sensitivity, SliceCell};
 
@@ -309,7 +309,7 @@ pub(super) fn measure_text(measure: Measure, cell: &SliceCell, units: UnitSystem
         return told.unwrap_or_else(|| "too few rows".to_owned());
     };
     let Some(quantity) = Quantity::from_si_symbol(measure.unit()) else {
-        return format!("{} ± {}", percent(mean), percent(cell.error));
+        return NumberFormat::english(units).chance(mean, Some(cell.error));
     };
     let unit: Unit = quantity.display_unit(units);
     let [mean, error] = [mean, cell.error].map(|value| unit.from_si(value));
