@@ -217,6 +217,13 @@ pub(super) struct Held {
     text: String,
 }
 
+impl Held {
+    /// For a person: `Stability control: with ESC`.
+    pub(super) fn told(&self) -> String {
+        format!("{}: {}", self.label, self.text)
+    }
+}
+
 impl HeldArgs {
     /// The bin of every axis.
     ///
@@ -250,10 +257,7 @@ pub(super) fn listed(atlas: &Atlas, bins: &[Option<usize>], units: UnitSystem) -
 
 /// Prints what is held.
 pub(super) fn print_held(out: &mut dyn Write, held: &[Held]) -> io::Result<()> {
-    for Held { label, text, .. } in held {
-        writeln!(out, "{label}: {text}")?;
-    }
-    Ok(())
+    held.iter().try_for_each(|held| writeln!(out, "{}", held.told()))
 }
 
 /// The axis that a name or a word names.

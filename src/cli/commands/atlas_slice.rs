@@ -101,7 +101,8 @@ pub(super) fn run(
             write_picture(atlas, [x, y], &held, measure, (args, out.as_path()))?
         }
         (Some(out), _) => write_atomically(out, args.overwrite.into(), |file| {
-            write_slice_csv(&slice, measure, file).map_err(std::io::Error::other)
+            let told = restrictions(note, &listed(atlas, &held, args.units.into()));
+            write_slice_csv(&slice, measure, &told, file).map_err(std::io::Error::other)
         })?,
         (None, _) => {}
     }
@@ -128,6 +129,13 @@ pub(super) fn run(
         let header = [x, y, "± standard error", "rows", "inside", ""];
         print_table(out, &header, &table(&slice, measure, args.units))
     })
+}
+
+/// What a table of cells is, and what is held in it.
+fn restrictions(note: &str, held: &[Held]) -> String {
+    let held: Vec<String> = held.iter().map(Held::told).collect();
+    let all = if held.is_empty() { "all rows".to_owned() } else { held.join(", ") };
+    format!("{note}; {all}; every other axis is averaged over")
 }
 
 /// A row for each cell.

@@ -4,6 +4,7 @@ use std::io::Write;
 
 use crate::figure::contours::contours;
 use crate::figure::{Axis, CellMap, Figure, FigureElement, LineStyle, Role, Series};
+use impactlab_core::data::RESTRICTIONS_COLUMN;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 use impactlab_core::units::{Phrase, Quantity, Unit, UnitSystem, significant, trimmed};
 use impactlab_sweep::atlas::{Atlas, Measure, Sensitivity, Slice, SliceCell};
@@ -229,13 +230,17 @@ fn input_label(atlas: &Atlas, input: &str) -> String {
 }
 
 /// Writes the cells of a map as CSV, one row a cell, in SI units; ends, mean and error of a cell are empty
-/// where there are none.
+/// where there are none, and what a corridor beyond the histogram is more than has a column of its own.
+///
+/// - `restrictions`: what the map is and what is held, in the first row of the last column
+///   ([`RESTRICTIONS_COLUMN`]).
 ///
 /// # Errors
 /// [`csv::Error`] if the writer fails.
 pub fn write_slice_csv(
     slice: &Slice,
     measure: Measure,
+    restrictions: &str,
     writer: impl Write,
 ) -> Result<(), csv::Error> {
     let mut csv = csv::Writer::from_writer(writer);
@@ -252,6 +257,8 @@ pub fn write_slice_csv(
         "rows_failed".to_owned(),
         "share_inside_domain".to_owned(),
         "hatched".to_owned(),
+        "more_than".to_owned(),
+        RESTRICTIONS_COLUMN.to_owned(),
     ];
     csv.write_record(&head)?;
     let width = slice.x.n_bins().max(1);
@@ -276,6 +283,8 @@ pub fn write_slice_csv(
             cell.n_failed.to_string(),
             cell.inside.to_string(),
             is_hatched(cell).to_string(),
+            number(cell.more_than),
+            if idx == 0 { restrictions } else { "" }.to_owned(),
         ];
         csv.write_record(&row)?;
     }
@@ -339,13 +348,15 @@ mod tests {
     #[test]
     fn the_table_of_a_map_has_a_row_for_each_cell_and_says_what_is_missing() {
         let mut text = Vec::new();
-        write_slice_csv(&slice(), Measure::Mean(Outcome::Turns90), &mut text).unwrap();
+        let mut slice = slice();
+        slice.cells[2].more_than = Some(60.0);
+        write_slice_csv(&slice, Measure::Mean(Outcome::Turns90), "a study", &mut text).unwrap();
         let text = String::from_utf8(text).unwrap();
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 5, "{text}");
         assert!(lines[0].starts_with("speed_m_s_low,speed_m_s_high,esc_low,esc_high,turns_90,"));
-        assert_eq!(lines[1], "10,20,without,without,0.1,0.01,100,100,0,1,false");
-        assert_eq!(lines[3], "10,20,with,with,,,100,100,0,1,true");
+        assert_eq!(lines[1], "10,20,without,without,0.1,0.01,100,100,0,1,false,,a study");
+        assert_eq!(lines[3], "10,20,with,with,,,100,100,0,1,true,60,");
     }
 
     #[test]
