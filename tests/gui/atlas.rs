@@ -208,6 +208,9 @@ fn a_cell_becomes_a_variant_that_is_played_and_can_be_undone() {
     let scenario = now.project.scenario().expect("a scenario");
     assert!((scenario.struck.vx_world_m_s - 25.0).abs() < 1e-9, "{scenario:?}");
     assert!((scenario.striking.vy_world_m_s - 3.0).abs() < 1e-9, "{scenario:?}");
+    // It kept the heading of the case before and slid, which no row of the atlas does.
+    let way_rad = scenario.striking.vy_world_m_s.atan2(scenario.striking.vx_world_m_s);
+    assert!((scenario.striking.heading_rad - way_rad).abs() < 1e-9, "{scenario:?}");
     let ending = scenario.ending.as_ref().expect("an ending");
     assert!(ending.esc.is_some());
     // What is integrated out stays.

@@ -89,8 +89,12 @@ impl State {
         let ending = base.ending.clone();
         let vehicles = Role::ALL.map(|role| self.vehicle_on_road(role));
         let question = PitQuestion { scenario: base, pairs, road_sigma: 0.0, limit_s: 0.0 };
-        let number =
-            |input: PitInput| values.iter().find(|of| of.input == input).map(|of| of.value);
+        // In the rows of the atlas the striking car drives about as it points.
+        let follows_way = sets_way_alone(&values);
+        let number = |input: PitInput| {
+            let told = values.iter().find(|of| of.input == input).map(|of| of.value);
+            told.or_else(|| (follows_way && input == PitInput::Slip).then_some(0.0))
+        };
         let Some(mut scenario) = question.scenario_of(vehicles, number) else {
             let why = "no variant was made: the case at hand gives its contact in another way than by \
                  a side of the struck car";
@@ -102,7 +106,8 @@ impl State {
         let units = self.view.units;
         let text =
             |of: &CellValue<'_>| format!("{}: {}", of.axis.label, of.axis.bin_text(of.bin, units));
-        let told = values.iter().map(text).collect::<Vec<_>>().join("; ");
+        let way = follows_way.then(|| "the striking car drives as it points".to_owned());
+        let told = values.iter().map(text).chain(way).collect::<Vec<_>>().join("; ");
         scenario.notes = format!("The middle of a cell of the atlas. {told}");
         let friction = number(PitInput::Friction);
         let sets_pair = number(PitInput::Pair).is_some();
@@ -156,6 +161,13 @@ fn cell_values<'a>(atlas: &'a Atlas, bins: &[Option<usize>]) -> Vec<CellValue<'a
         Some(CellValue { axis, bin, input, value: (low + high) / 2.0 })
     };
     atlas.axes.iter().zip(bins).filter_map(of).collect()
+}
+
+/// Whether a cell says how the striking car moves, and not how it points.
+fn sets_way_alone(values: &[CellValue<'_>]) -> bool {
+    let has = |inputs: &[PitInput]| values.iter().any(|of| inputs.contains(&of.input));
+    has(&[PitInput::TargetSpeed, PitInput::Closing, PitInput::Faster])
+        && !has(&[PitInput::Angle, PitInput::Slip])
 }
 
 /// The pairs of vehicles that a cell chooses from; none if it says no pair.
