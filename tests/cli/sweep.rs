@@ -255,6 +255,17 @@ list = [0.5, 0.9, 50]
         let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
         assert!(said.contains(place) && said.contains("are in SI units"), "{said}");
     }
+    // No row would have had the number, and of two of one name the place was not told.
+    let again = "{ name = \"x_m\", at = \"/end/y_m\", unit = \"m\" }, { name";
+    for (line, instead, expected) in [
+        ("/end/x_m", "end/x_m", "places that begin with \"/\", not \"end/x_m\""),
+        ("{ name", again, "a name that no other column has, not \"x_m\""),
+    ] {
+        fs::write(&bad, plan.replace(line, instead)).unwrap();
+        let said = error(&["plan", shown(&bad), "--out", shown(&out)]);
+        assert!(said.contains("bad.toml:7:12: request.outcomes"), "{said}");
+        assert!(said.contains(expected), "{said}");
+    }
     // Two values for one place: one of the columns would say what no row has.
     let again = "[vary.again]\nat = \"/friction\"\nlist = [0.6]\n[vary.friction]";
     fs::write(&bad, plan.replace("[vary.friction]", again)).unwrap();

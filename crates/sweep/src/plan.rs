@@ -416,18 +416,24 @@ impl Plan {
         if outcomes.is_empty() {
             return Some(("outcome".to_owned(), "at least one outcome".to_owned()));
         }
-        let inputs = self.vary.iter().map(|vary| vary.name.as_str());
+        let of_inputs =
+            self.vary.iter().map(|vary| (vary.name.as_str(), format!("vary.{}", vary.name)));
+        let of_outcomes =
+            outcomes.iter().map(|(name, _)| (name.as_str(), "request.outcomes".to_owned()));
         let mut seen = std::collections::BTreeSet::from(["row", "reason", UNKNOWNS]);
-        for name in inputs.chain(outcomes.iter().map(|(name, _)| name.as_str())) {
+        for (name, key) in of_inputs.chain(of_outcomes) {
             if name.is_empty() || !seen.insert(name) {
-                let expected = "a name that no other column has".to_owned();
-                return Some((format!("vary.{name}"), expected));
+                return Some((key, format!("a name that no other column has, not {name:?}")));
             }
         }
         if let Some(expected) = outcomes.iter().find_map(|(_, unit)| unit_fault(unit)) {
             return Some(("request.outcomes".to_owned(), expected));
         }
         if let SweptQuestion::Request(request) = &self.question {
+            if let Some(outcome) = request.outcomes.iter().find(|it| !it.at.starts_with('/')) {
+                let expected = format!("places that begin with \"/\", not {:?}", outcome.at);
+                return Some(("request.outcomes".to_owned(), expected));
+            }
             let is_missing = |at: &&String| request.request.pointer(at).is_none();
             if let Some(at) = request.seed_at.iter().find(is_missing) {
                 let expected = format!("a JSON pointer to a value of the request, not {at:?}");
