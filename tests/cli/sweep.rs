@@ -273,6 +273,32 @@ list = [0.5, 0.9, 50]
     assert!(said.contains("another place than \"/friction\""), "{said}");
 }
 
+/// `ask` refuses a key that stands twice, and a sweep took the last one.
+#[test]
+fn a_request_is_read_as_ask_reads_it() {
+    let folder = TempDir::new().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let mut question = program();
+    question.args(["simulate", "--vehicle", "reference-2000", "--speed", "20"]);
+    question.args(["--duration", "1", "--print-request"]);
+    let text = ok(question.output().unwrap());
+    let twice = text.replace("\"seed\": 0", "\"seed\": 0, \"seed\": 1");
+    assert_ne!(twice, text);
+    fs::write(at("ask.json"), &twice).unwrap();
+    let plan = "question = \"request\"\nn = 1\n[request]\nfile = \"ask.json\"\n\
+                outcomes = [{ name = \"x_m\", at = \"/end/x_m\", unit = \"m\" }]\n\
+                [vary.\"road.friction\"]\nat = \"/friction\"\nuniform = [0.5, 0.9]\n";
+    fs::write(at("plan.toml"), plan).unwrap();
+    let out = at("out");
+    let said = error(&["plan", shown(&at("plan.toml")), "--out", shown(&out)]);
+    assert!(said.contains("ask.json: is no request: duplicate field `seed`"), "{said}");
+    // A name with a point was told to have no distribution.
+    fs::write(at("ask.json"), &text).unwrap();
+    let planned =
+        json(&ok(run(&["plan", shown(&at("plan.toml")), "--out", shown(&out), "--json"])));
+    assert_eq!(planned["inputs"][0], "road.friction", "{planned}");
+}
+
 #[test]
 fn every_file_that_a_row_may_read_is_known_by_its_content() {
     let folder = TempDir::new().unwrap();

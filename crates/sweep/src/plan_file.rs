@@ -267,8 +267,7 @@ impl RequestFile {
         let path = folder.join(&self.file);
         let text = read_utf8(&path, MAX_SETTINGS_BYTES)?;
         let wrong = |source| SweepError::Request { path: path.clone(), source };
-        let value: Value = serde_json::from_str(&text).map_err(wrong)?;
-        let request: Request = serde_json::from_value(value).map_err(wrong)?;
+        let request: Request = serde_json::from_str(&text).map_err(wrong)?;
         // With what the file leaves out, so that it can be varied too.
         let value = serde_json::to_value(&request).map_err(wrong)?;
         let (seed_at, outcomes) = (self.seed_at.into_vec(), self.outcomes);
@@ -282,8 +281,15 @@ impl VaryFile {
         let wrong = |inner: &str, expected: &str| {
             Err(file.wrong_value(&format!("{key}.{inner}"), "missing", expected))
         };
-        let given = DISTRIBUTIONS.iter().filter(|of| file.contains(&format!("{key}.{of}")));
-        if given.count() != 1 {
+        let given = [
+            self.uniform.is_some(),
+            self.normal.is_some(),
+            self.lognormal.is_some(),
+            self.triangular.is_some(),
+            self.list.is_some(),
+            self.steps.is_some(),
+        ];
+        if given.into_iter().filter(|is_given| *is_given).count() != 1 {
             return Err(file.wrong_value(&key, "this", &format!("one of {DISTRIBUTIONS:?}")));
         }
         let is_cut = self.low.or(self.high).is_some();
