@@ -51,11 +51,11 @@ pub use monte_carlo::MonteCarloError;
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBand, MotionBands};
 pub use motion_columns::motion_columns;
 pub use motion_density::{DensityMap, DensityTask, Region};
-pub(crate) use motion_forecast::in_world;
 pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
+pub(crate) use motion_forecast::{ended, in_world};
 pub use pair_forecast::{
     BothVehicles, BothVehiclesQuestion, FirstContact, FirstForces, forecast_both,
 };

@@ -362,6 +362,19 @@ pub(crate) fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     history
 }
 
+/// A pulse without the ripple that is drawn after its end: as long as a known force lasts, the contact law
+/// does nothing.
+pub(crate) fn ended(pulse: &ForceCurve) -> ForceCurve {
+    let mut ended = pulse.clone();
+    let forces = ended.fx_n.iter_mut().zip(&mut ended.fy_n);
+    for (time_s, (fx_n, fy_n)) in pulse.time_s().into_iter().zip(forces) {
+        if time_s > pulse.duration_s {
+            (*fx_n, *fy_n) = (0.0, 0.0);
+        }
+    }
+    ended
+}
+
 /// Mean state of several paths at each instant.
 fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
     let n_instants = paths.first().map_or(0, Vec::len);

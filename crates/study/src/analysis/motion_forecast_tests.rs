@@ -125,3 +125,13 @@ fn a_force_is_turned_into_world_axes() {
     let history = in_world(&curve, std::f64::consts::FRAC_PI_2);
     assert!((history.fx_n[3] + 1e3).abs() < 1e-9 && history.fy_n[3].abs() < 1e-9);
 }
+
+/// A ripple of 1.3 % of the peak counted as contact up to the end of the grid, at 0.25 s.
+#[test]
+fn a_drawn_pulse_ends_with_its_duration() {
+    let fx_n = vec![0.0, 3e3, 1e3, 40.0, -40.0];
+    let pulse = ForceCurve { fx_n, fy_n: vec![10.0; 5], duration_s: 0.003 };
+    let ended = ended(&pulse);
+    assert_eq!(ended.fx_n, [0.0, 3e3, 1e3, 0.0, 0.0]);
+    assert_eq!(ended.fy_n, [10.0, 10.0, 10.0, 0.0, 0.0]);
+}

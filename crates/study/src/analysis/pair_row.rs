@@ -7,7 +7,7 @@
 use rand::RngExt as _;
 
 use crate::analysis::contact_pair::{ContactPair, manoeuvres};
-use crate::analysis::motion_forecast::in_world;
+use crate::analysis::motion_forecast::{ended, in_world};
 use crate::analysis::pair_forecast::{SEED_OF_STRIKING, opposite};
 use crate::analysis::scenario::starts;
 use crate::analysis::{AnalysisError, MotionForecastError, PulseSetup, Settings, StruckVehicle};
@@ -179,7 +179,8 @@ impl PairRowQuestion<'_> {
     }
 
     /// The force of the first contact, as often as the network applies, and how far it does. The network
-    /// itself is asked only where its force is drawn.
+    /// itself is asked only where its force is drawn. Where it is not, the contact law follows from the start,
+    /// and beyond pushes on a flank in every other draw the momentum solution with its errors, as in a forecast.
     fn first_force(
         &self,
         struck: &StruckVehicle,
@@ -187,13 +188,20 @@ impl PairRowQuestion<'_> {
     ) -> Result<(Option<ForceHistory>, f64), PairRowError> {
         let collision = ForceScenario::from_scenario(self.scenario).map_err(no_scenario)?;
         let applicability = model.applicability(&collision).map_err(no_force)?;
+        let heading_rad = struck.initial.yaw_rad;
         let mut rng = random_stream(self.seed, "force curves", 0);
-        if rng.random::<f64>() >= applicability {
+        if rng.random::<f64>() < applicability {
+            let learned = model.learned(&collision).map_err(no_force)?;
+            let curve = learned.sample(1, &mut rng).pop();
+            return Ok((curve.map(|curve| in_world(&curve, heading_rad)), applicability));
+        }
+        let mut rng = random_stream(self.seed, "momentum pulses", 0);
+        if collision.is_push_on_flank() || rng.random::<bool>() {
             return Ok((None, applicability));
         }
-        let learned = model.learned(&collision).map_err(no_force)?;
-        let curve = learned.sample(1, &mut rng).pop();
-        Ok((curve.map(|curve| in_world(&curve, struck.initial.yaw_rad)), applicability))
+        let bare = model.predict(&collision).map_err(no_force)?.bare;
+        let pulse = bare.and_then(|pulses| pulses.sample(1, &mut rng).pop());
+        Ok((pulse.map(|pulse| in_world(&ended(&pulse), heading_rad)), applicability))
     }
 
     /// A vehicle as drawn, with its response network, and how far that applies.
@@ -287,5 +295,32 @@ mod tests {
             seed: 1,
         };
         assert!(pair_row(&question, &force, &response).is_err());
+    }
+
+    /// A sweep had the contact law alone in every row of a T-bone, of which a forecast has it in half.
+    #[test]
+    fn beyond_flanks_every_other_row_has_the_momentum_solution() {
+        let model = Library::default().force_model(&ModelChoice::default()).unwrap();
+        let vehicles = [Preset::Target.parameters(), Preset::Bullet2000.parameters()];
+        let mut scenario = Scenario::example();
+        scenario.striking.heading_rad = std::f64::consts::FRAC_PI_2;
+        scenario.striking.vx_world_m_s = 0.0;
+        scenario.striking.vy_world_m_s = 25.0;
+        let first_force = |seed| {
+            let question = PairRowQuestion {
+                scenario: &scenario,
+                vehicles: [&vehicles[0], &vehicles[1]],
+                road_sigma: 0.0,
+                limit_s: 5.0,
+                seed,
+            };
+            let starts = starts(&scenario, &PulseSetup::default(), &question.settings());
+            let ([struck, _], _) = starts.unwrap();
+            question.first_force(&struck, &model).unwrap()
+        };
+        let all: Vec<_> = (0..32).map(first_force).collect();
+        assert!(all.iter().all(|(_, applicability)| *applicability < 0.05));
+        let n_known = all.iter().filter(|(force, _)| force.is_some()).count();
+        assert!((7..=25).contains(&n_known), "{n_known}");
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::analysis::{
     Analysis, BothVehiclesQuestion, ContactPair, FirstContact, FirstForces, MotionForecast,
-    MotionForecastSettings, PlaceChance, StruckVehicle, forecast_both, in_world, place_chances,
+    MotionForecastSettings, PlaceChance, StruckVehicle, ended, forecast_both, in_world,
+    place_chances,
 };
 use crate::caveats::covered::covered_part;
 use crate::caveats::unused::{by_force_network, drawn_drivers, lanes_by_network};
@@ -16,7 +17,7 @@ use impactlab_core::data::{ForceHistory, Outcome};
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
 use impactlab_core::site::Site;
-use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture, ForceCurve};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture};
 use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_networks::force::{ForcePrediction, ForceScenario, SHARE_OF_NETWORK};
 use impactlab_networks::response::ResponseModel;
@@ -261,19 +262,6 @@ impl FirstForces {
     }
 }
 
-/// A pulse without the ripple that is drawn after its end: as long as a known force lasts, the contact law
-/// does nothing.
-fn ended(pulse: &ForceCurve) -> ForceCurve {
-    let mut ended = pulse.clone();
-    let forces = ended.fx_n.iter_mut().zip(&mut ended.fy_n);
-    for (time_s, (fx_n, fy_n)) in pulse.time_s().into_iter().zip(forces) {
-        if time_s > pulse.duration_s {
-            (*fx_n, *fy_n) = (0.0, 0.0);
-        }
-    }
-    ended
-}
-
 /// What restricts a predicted force where the contact law stands for what the network does not say.
 ///
 /// - `has_pulses`: whether the momentum solution does so in half of these draws.
@@ -329,16 +317,6 @@ fn shared_text(share: f64) -> Phrase {
 mod tests {
     use super::*;
     use impactlab_core::collision::{ContactLocation, Scenario, Side};
-
-    /// A ripple of 1.3 % of the peak counted as contact up to the end of the grid, at 0.25 s.
-    #[test]
-    fn a_drawn_pulse_ends_with_its_duration() {
-        let fx_n = vec![0.0, 3e3, 1e3, 40.0, -40.0];
-        let pulse = ForceCurve { fx_n, fy_n: vec![10.0; 5], duration_s: 0.003 };
-        let ended = ended(&pulse);
-        assert_eq!(ended.fx_n, [0.0, 3e3, 1e3, 0.0, 0.0]);
-        assert_eq!(ended.fy_n, [10.0, 10.0, 10.0, 0.0, 0.0]);
-    }
 
     /// T-bone, rear-end and frontal collisions were told how often regions had held of PITs.
     #[test]
