@@ -443,6 +443,10 @@ fn the_batch_file_for_slurm_is_a_script_of_the_shell() {
     let file = folder.path().join("sweep.sh");
     fs::write(&file, &script).unwrap();
     ok(Command::new("bash").arg("-n").arg(&file).output().unwrap());
+    // The list of a sweep of which nothing is missing is empty, and sent off the whole array.
+    let mut again = Command::new("bash");
+    again.arg(&file).arg("").env_remove("SLURM_JOB_ID");
+    assert_eq!(ok(again.output().unwrap()), "no chunk is missing, and nothing was sent off\n");
     let quoted = script.lines().find(|line| line.starts_with("plan=")).unwrap();
     let echo = format!("{quoted}; printf %s \"$plan\"");
     let echoed = ok(Command::new("bash").args(["-c", &echo]).output().unwrap());

@@ -46,6 +46,10 @@ plan={folder}
 impactlab={program}
 
 if [ -z \"${{SLURM_JOB_ID:-}}\" ]; then
+    if [ $# -gt 0 ] && [ -z \"$1\" ]; then
+        echo \"no chunk is missing, and nothing was sent off\"
+        exit
+    fi
     job=$(sbatch --parsable --array=\"${{1:-0-{last}}}\" \"$0\")
     # Once all tasks have ended, however they have: it says which chunks are missing, if any are.
     merge=$(printf '%q ' \"$impactlab\" sweep merge \"$plan\" --out \"$plan/rows.parquet\" --overwrite)
