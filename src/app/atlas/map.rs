@@ -178,7 +178,8 @@ impl AtlasSession {
             return vec!["The case at hand does not say both axes of this map.".to_owned()];
         };
         let mut lines = vec![format!("The case at hand: {}", map.text(cell, units))];
-        lines.extend(place.other_driver().map(|text| text.say(&NumberFormat::english(units))));
+        let format = NumberFormat::english(units);
+        lines.extend(place.other_drivers().iter().map(|text| text.say(&format)));
         let others = map.elsewhere(atlas, &case.bins);
         if !others.is_empty() {
             let others = others.join(", ");

@@ -184,17 +184,24 @@ impl CasePlace {
         atlas.locate(&values)
     }
 
-    /// That the driver of the striking car does something else than in the map, if he does.
-    pub fn other_driver(&self) -> Option<Phrase> {
-        let text = || {
-            Phrase::new(
-                "The driver of the striking car does something else in this case than in the atlas: it is \
-                 another manoeuvre, which may end otherwise.",
-                "Der Fahrer des stoßenden Fahrzeugs tut in diesem Fall etwas anderes als im Atlas: Es ist ein \
-                 anderes Manöver, das anders ausgehen kann.",
-            )
-        };
-        (!self.turns_in).then(text)
+    /// What is done to the cars in this case and in no row of the map, a phrase each; empty if nothing is.
+    pub fn other_drivers(&self) -> Vec<Phrase> {
+        let striking = Phrase::new(
+            "The driver of the striking car does something else in this case than in the atlas: it is \
+             another manoeuvre, which may end otherwise.",
+            "Der Fahrer des stoßenden Fahrzeugs tut in diesem Fall etwas anderes als im Atlas: Es ist ein \
+             anderes Manöver, das anders ausgehen kann.",
+        );
+        let struck = Phrase::new(
+            "The struck car is steered, driven or damaged in this case as in no row of the atlas, in which \
+             its driver does nothing, countersteers or brakes: the numbers are averages over these.",
+            "Das gestoßene Fahrzeug wird in diesem Fall so gelenkt, angetrieben oder beschädigt, wie es in \
+             keiner Rechnung des Atlas vorkommt; dort tut sein Fahrer nichts, lenkt gegen oder bremst: Die \
+             Zahlen sind Mittel darüber.",
+        );
+        let is_known = self.value(PitInput::Driver.name()).is_some();
+        let all = [(self.turns_in, striking), (is_known, struck)];
+        all.into_iter().filter(|(is_as_in_map, _)| !is_as_in_map).map(|(_, text)| text).collect()
     }
 
     /// What of the case lies outside of the map, a phrase each; empty if nothing does.
@@ -237,7 +244,10 @@ impl CasePlace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::vehicle::{Countersteer, PitDriver, Preset, built_in_vehicle};
+    use impactlab_core::units::NumberFormat;
+    use impactlab_core::vehicle::{
+        Braking, Countersteer, DEFAULT_BRAKE_RISE_S, PitDriver, Preset, built_in_vehicle,
+    };
 
     #[test]
     fn the_example_is_a_pit_with_the_values_of_its_file() {
@@ -250,12 +260,12 @@ mod tests {
         assert!((value(PitInput::Angle) - 18_f64.to_radians()).abs() < 1e-9);
         assert!(value(PitInput::Slip).abs() < 1e-9, "it drives where it points");
         assert_eq!((value(PitInput::Esc), value(PitInput::Driver)), (0.0, 0.0));
-        assert!(place.other_driver().is_some(), "the striking car coasts");
+        assert_eq!(place.other_drivers().len(), 1, "the striking car coasts");
         let driver = PitDriver { end: Some(PitEnd::Brake), ..PitDriver::default() };
         let ending = Ending { pit: Some(driver), ..Ending::default() };
         let scenario = Scenario { striking_ending: Some(ending), ..scenario };
         let place = place_of_case(&scenario, &struck).unwrap();
-        assert_eq!(place.other_driver(), None);
+        assert!(place.other_drivers().is_empty(), "{place:?}");
         assert!(value(PitInput::Overlap).abs() < 0.6, "{place:?}");
     }
 
@@ -289,6 +299,14 @@ mod tests {
         countersteers.ending = Some(ending);
         let place = place_of_case(&countersteers, &struck).unwrap();
         assert_eq!(place.value(PitInput::Driver.name()), Some(1.0));
+        // Nothing said that no row has a driver who does both.
+        let ending = countersteers.ending.get_or_insert_default();
+        ending.brake = Some(Braking::new(0.8, 0.8, DEFAULT_BRAKE_RISE_S));
+        let place = place_of_case(&countersteers, &struck).unwrap();
+        assert_eq!(place.value(PitInput::Driver.name()), None);
+        let told = place.other_drivers();
+        let format = NumberFormat::english(UnitSystem::Si);
+        assert!(told.iter().any(|it| it.say(&format).contains("as in no row")), "{told:?}");
     }
 
     /// It was said what the map has, and not how far off the case is.

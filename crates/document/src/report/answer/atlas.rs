@@ -103,8 +103,8 @@ fn of_case(
         ("averaged", &*averaged),
     ];
     blocks.push(Block::paragraph(fill(words.atlas_text, &values)));
-    let other_driver = place.other_driver().map(|text| text.say(wording));
-    blocks.extend(other_driver.map(|text| Block::Notice { text }));
+    let others = place.other_drivers();
+    blocks.extend(others.iter().map(|text| Block::Notice { text: text.say(wording) }));
     blocks.push(Block::Table(table(&cell, wording)));
     InAtlas { blocks, picture: map(atlas, &place, wording) }
 }
