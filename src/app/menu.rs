@@ -22,12 +22,11 @@ use crate::app::state::State;
 use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::duration_text;
+use crate::app::widgets::{duration_text, severity_color, severity_icon};
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::Severity;
 use impactlab_core::jobs::{Job, Progress};
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 
 /// Whether the project can be undone and redone.
 #[derive(Clone, Copy)]
@@ -327,7 +326,7 @@ fn message_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             commands.push(Command::ShowMessages);
         }
     }
-    let color = theme::severity_color(latest.severity, state.view.dark);
+    let color = severity_color(ui, latest.severity);
     looks::icon_ui(ui, severity_icon(latest.severity), color);
     let text = match latest.severity {
         Severity::Error => format!("Error: {}", latest.text),
@@ -335,15 +334,6 @@ fn message_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         Severity::Info => latest.text.clone(),
     };
     ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
-}
-
-/// The icon beside a message.
-fn severity_icon(severity: Severity) -> Icon {
-    match severity {
-        Severity::Error => Icon::CircleX,
-        Severity::Warning => Icon::TriangleAlert,
-        Severity::Info => Icon::Info,
-    }
 }
 
 /// Draws the list of all messages since the start, the newest first.
@@ -354,7 +344,7 @@ pub fn messages_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             ui.weak("Nothing has been said since the start.");
         }
         for (time, message) in state.session.log.iter().rev() {
-            let color = theme::severity_color(message.severity, state.view.dark);
+            let color = severity_color(ui, message.severity);
             ui.horizontal_wrapped(|ui| {
                 ui.monospace(time);
                 ui.label(RichText::new(&message.text).color(color));

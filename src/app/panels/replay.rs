@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use egui::{Button, Label, ProgressBar, RichText, ScrollArea, Ui};
+use egui::{Button, Label, ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -16,13 +16,13 @@ use crate::app::question_job::QuestionJob;
 use crate::app::recorder::RecorderCommand;
 use crate::app::source::{Content, Source};
 use crate::app::widgets::{
-    duration_text, facts_ui, figure_frame, replay_assumptions_ui, restrictions_ui,
+    duration_text, facts_ui, figure_frame, notice_ui, replay_assumptions_ui, restrictions_ui,
 };
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{ReplayCurve, replay_curve_figure, replay_path_figure};
-use impactlab_draw::{FigureOptions, theme};
+use impactlab_draw::FigureOptions;
 use impactlab_study::{Answer, ReplayReport, ReplayRequest};
 
 /// What the buttons say that ask for a replay.
@@ -133,7 +133,7 @@ fn run_ui(
     });
     let is_asked = run.latest.as_ref().is_some_and(|latest| latest.question == *request);
     if let Some(problem) = run.problem().filter(|_| is_asked) {
-        notice_ui(ui, Severity::Error, &format!("Not replayed: {problem}"));
+        notice_ui(ui, Severity::Error, format!("Not replayed: {problem}"));
     }
 }
 
@@ -183,9 +183,4 @@ fn figures_ui(
         let figure = replay_curve_figure(report, curve, units).with_caveats(&caveats);
         figure_frame(ui, curve.label(), &figure, &options(curve.label(), CURVE_HEIGHT), commands);
     }
-}
-
-fn notice_ui(ui: &mut Ui, severity: Severity, text: &str) {
-    let color = theme::severity_color(severity, ui.visuals().dark_mode);
-    ui.add(Label::new(RichText::new(text).color(color)).wrap());
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use egui::{Button, Grid, Label, RichText, ScrollArea, Ui};
+use egui::{Button, Grid, Label, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -14,9 +14,8 @@ use crate::app::panes::PaneContext;
 use crate::app::state::Session;
 use crate::app::sweep::{KnownSweep, SweepCommand, SweepView, TimedRows};
 use crate::app::tasks::TaskKey;
-use crate::app::widgets::duration_text;
+use crate::app::widgets::{duration_text, notice_ui};
 use impactlab_core::data::Severity;
-use impactlab_draw::theme;
 use impactlab_sweep::{Design, SweptQuestion};
 
 /// Width of texts, points.
@@ -42,7 +41,7 @@ pub fn sweep_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 ui.add_space(looks::PART);
                 work_ui(ui, sweep, (&view.sweep, session), commands);
             }
-            (None, Some(why)) => problem_ui(ui, why),
+            (None, Some(why)) => drop(notice_ui(ui, Severity::Error, why)),
             (None, None) => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Reading…")))),
         }
     });
@@ -191,7 +190,7 @@ fn work_ui(
         ui.add(Label::new(line).wrap());
     }
     if let Some(why) = session.sweep.problem() {
-        problem_ui(ui, why);
+        notice_ui(ui, Severity::Error, why);
     }
     ui.horizontal_wrapped(|ui| {
         let is_complete = sweep.n_missing() == 0;
@@ -214,9 +213,4 @@ fn work_ui(
             commands.push(Command::Sweep(SweepCommand::Look));
         }
     });
-}
-
-fn problem_ui(ui: &mut Ui, why: &str) {
-    let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-    ui.add(Label::new(RichText::new(why).color(color)).wrap());
 }

@@ -7,6 +7,7 @@ mod cost;
 mod dataset_choice;
 mod facts;
 mod figure_frame;
+mod notice;
 mod number;
 mod points;
 mod quantity;
@@ -22,6 +23,7 @@ pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use facts::{facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
+pub use notice::{notice_ui, severity_color, severity_icon};
 pub use points::PointRows;
 pub use quantity::{
     EmptyField, SliderRange, count_field, duration_text, optional_count, optional_quantity,

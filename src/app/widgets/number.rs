@@ -5,7 +5,9 @@ use std::ops::RangeInclusive;
 
 use egui::{Event, Id, Key, Response, Ui};
 
-use crate::app::widgets::refusal::{refusal_color, refusal_ui};
+use crate::app::widgets::refusal::refusal_ui;
+use crate::app::widgets::severity_color;
+use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, Unit, significant};
 
 /// A number as a control shows it, in the unit in which it is shown and typed.
@@ -166,7 +168,7 @@ pub(super) fn number_ui(
     let response = ui.vertical(|ui| {
         let response = ui.scope(|ui| {
             if refused.is_some() {
-                ui.visuals_mut().override_text_color = Some(refusal_color(ui));
+                ui.visuals_mut().override_text_color = Some(severity_color(ui, Severity::Error));
             }
             control(ui, Editing { value: &mut shown, suffix, parse: &parse, format: &format })
         });

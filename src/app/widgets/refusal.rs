@@ -1,23 +1,19 @@
 //! Says what is wrong with what was typed, and moves nothing that is around it.
 
-use egui::{Color32, Label, Response, RichText, Shape, Stroke, StrokeKind, Tooltip, Ui, pos2};
+use egui::{Label, Response, RichText, Shape, Stroke, StrokeKind, Tooltip, Ui, pos2};
 
+use crate::app::widgets::severity_color;
 use impactlab_core::data::Severity;
-use impactlab_draw::theme;
 
 /// Side of the mark in the corner of the field, points.
 const MARK: f32 = 6.0;
-
-/// The colour of a text that is not taken.
-pub(super) fn refusal_color(ui: &Ui) -> Color32 {
-    theme::severity_color(Severity::Error, ui.visuals().dark_mode)
-}
 
 /// Draws a line that says what is wrong, with all of it on hovering. The line is always there, so that the
 /// fields below it do not move while they are filled in.
 pub fn problem_line_ui(ui: &mut Ui, problem: Option<&str>) {
     let text = problem.unwrap_or_default();
-    let line = ui.add(Label::new(RichText::new(text).color(refusal_color(ui))).truncate());
+    let color = severity_color(ui, Severity::Error);
+    let line = ui.add(Label::new(RichText::new(text).color(color)).truncate());
     if !text.is_empty() {
         line.on_hover_text(text);
     }
@@ -29,7 +25,7 @@ pub fn problem_line_ui(ui: &mut Ui, problem: Option<&str>) {
 /// - `is_open`: whether it is said now; otherwise on hovering.
 /// - returns the response of the field.
 pub(super) fn refusal_ui(ui: &Ui, field: Response, why: &str, is_open: bool) -> Response {
-    let (rect, color) = (field.rect, refusal_color(ui));
+    let (rect, color) = (field.rect, severity_color(ui, Severity::Error));
     ui.painter().rect_stroke(rect, 2.0, Stroke::new(1.0, color), StrokeKind::Inside);
     let corner = rect.right_top();
     let ends = [corner, pos2(corner.x - MARK, corner.y), pos2(corner.x, corner.y + MARK)];

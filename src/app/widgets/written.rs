@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use egui::{Response, TextEdit, Ui};
 
-use crate::app::widgets::refusal::{refusal_color, refusal_ui};
+use crate::app::widgets::refusal::refusal_ui;
+use crate::app::widgets::severity_color;
+use impactlab_core::data::Severity;
 use impactlab_study::ConfigChoice;
 
 /// What was typed, and the value in its place as it is written.
@@ -31,7 +33,7 @@ pub fn written_field<T>(
     let written = write(value);
     let typed = ui.data(|data| data.get_temp::<Typed>(id)).filter(|typed| typed.value == written);
     let mut text = typed.map_or(written, |typed| typed.text);
-    let color = read(&text).is_err().then(|| refusal_color(ui));
+    let color = read(&text).is_err().then(|| severity_color(ui, Severity::Error));
     let response = ui.add(look(TextEdit::singleline(&mut text).text_color_opt(color)));
     let taken = read(&text);
     let problem = taken.as_ref().err().cloned();

@@ -7,12 +7,12 @@ use crate::app::dialog::Purpose;
 use crate::app::ground::{GroundCommand, REMOVE_SITE};
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::output::Output;
+use crate::app::panels::reconstruction::OUTDATED;
 use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
-use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panes::{Pane, PaneContext};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
-use crate::app::widgets::{count_field, duration_text, seed_field};
+use crate::app::widgets::{count_field, duration_text, notice_ui, seed_field};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evidence::Evidence;
@@ -65,7 +65,7 @@ fn start_ui(
         && let Err(problem) = &file.evidence
     {
         let text = format!("{} cannot be read: {problem}", path.display());
-        notice_ui(ui, Severity::Error, &text);
+        notice_ui(ui, Severity::Error, text);
     }
     ui.strong("How fast were the cars?");
     ui.label(
@@ -146,7 +146,7 @@ fn case_ui(
             "The wheels stand on the friction zones of {name}, the site of this case, in the axes of the \
              evidence. Evidence of another place belongs into a new case, or to no site."
         );
-        notice_ui(ui, Severity::Info, &text);
+        notice_ui(ui, Severity::Info, text);
         ui.horizontal_wrapped(|ui| {
             let hint = "Where it is looked at, measured, saved and taken away";
             if ui.small_button("Show the site").on_hover_text(hint).clicked() {
@@ -211,7 +211,7 @@ fn run_ui(
         };
         match session.run.job() {
             Some(_) => progress_ui(ui, session, &mut command),
-            None => notice_ui(ui, severity, &state),
+            None => drop(notice_ui(ui, severity, state)),
         }
     });
 }

@@ -8,9 +8,9 @@ use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::Command;
 use crate::app::looks::{Icon, icon_button};
+use crate::app::panels::reconstruction::OUTDATED;
 use crate::app::panels::reconstruction::backdrop::{backdrop, lines_below};
 use crate::app::panels::reconstruction::scene_edit::SceneEdit;
-use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panels::scene::{clock_ui, scene_heading_ui};
 use crate::app::panels::scene_camera::camera_menu_ui;
 use crate::app::panes::PaneContext;
@@ -20,7 +20,9 @@ use crate::app::reconstruction::{
     ReconstructionView, ShownPaths,
 };
 use crate::app::scene::SceneSettings;
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, restrictions_ui};
+use crate::app::widgets::{
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, notice_ui, restrictions_ui,
+};
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem, percent};
 use impactlab_core::vehicle::{Path, TireMark};
@@ -300,7 +302,7 @@ fn live_ui(ui: &mut Ui, live: &LiveParticles, units: UnitSystem) {
         format!("; {car} {low:.0} to {high:.0} {}", unit.symbol)
     });
     let text = format!("Not the answer yet: {reached}{}", speeds.unwrap_or_default());
-    notice_ui(ui, Severity::Info, &text);
+    notice_ui(ui, Severity::Info, text);
 }
 
 /// Draws the choice of the course of events, and what is played.

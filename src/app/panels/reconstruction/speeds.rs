@@ -6,11 +6,13 @@ use impactlab_core::uncertainty::Caveats;
 use crate::app::command::Command;
 use crate::app::looks;
 use crate::app::panels::faded_if;
+use crate::app::panels::reconstruction::OUTDATED;
 use crate::app::panels::reconstruction::findings::{budget_ui, modes_ui};
-use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{PreparedReconstruction, ReconstructionView};
-use crate::app::widgets::{evidence_assumptions_ui, facts_ui, figure_frame, restrictions_ui};
+use crate::app::widgets::{
+    evidence_assumptions_ui, facts_ui, figure_frame, notice_ui, restrictions_ui,
+};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{marginal_figure, pair_figure};

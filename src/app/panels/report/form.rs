@@ -12,11 +12,10 @@ use crate::app::panes::PaneContext;
 use crate::app::report::{MadeReport, ReportCommand, ReportView};
 use crate::app::state::Session;
 use crate::app::tasks::TaskKey;
-use crate::app::widgets::{duration_text, problem_line_ui};
+use crate::app::widgets::{duration_text, notice_ui, problem_line_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Language, Paper};
-use impactlab_draw::theme;
 use impactlab_study::case_file::Expert;
 
 /// Languages with their names in themselves.
@@ -139,13 +138,13 @@ fn made_ui(ui: &mut Ui, made: &Arc<MadeReport>, is_outdated: bool, commands: &mu
             "The case or these settings were changed after this report was made: make it again to save it",
         );
     }
-    match made.n_unanswered {
-        0 => {}
-        1 => notice_ui(ui, Severity::Warning, "A question of the case has no answer"),
-        n => notice_ui(ui, Severity::Warning, &format!("{n} questions of the case have no answer")),
-    }
-    for change in &made.changes {
-        notice_ui(ui, Severity::Warning, &change.to_string());
+    let unanswered = match made.n_unanswered {
+        0 => None,
+        1 => Some("A question of the case has no answer".to_owned()),
+        n => Some(format!("{n} questions of the case have no answer")),
+    };
+    for text in unanswered.into_iter().chain(made.changes.iter().map(ToString::to_string)) {
+        notice_ui(ui, Severity::Warning, text);
     }
     let save = ui.add_enabled(!is_outdated, icon_button(Icon::Save, "Save…"));
     let save = save.on_hover_text("As PDF, Markdown or JSON, by the ending of the name");
@@ -159,13 +158,4 @@ fn made_ui(ui: &mut Ui, made: &Arc<MadeReport>, is_outdated: bool, commands: &mu
             commands.push(Command::Report(ReportCommand::ShowSection(section.kind)));
         }
     }
-}
-
-/// Draws a line that must not be overlooked, with an icon.
-fn notice_ui(ui: &mut Ui, severity: Severity, text: &str) {
-    let color = theme::severity_color(severity, ui.visuals().dark_mode);
-    ui.horizontal_top(|ui| {
-        looks::icon_ui(ui, Icon::TriangleAlert, color);
-        ui.add(Label::new(RichText::new(text).color(color)).wrap());
-    });
 }
