@@ -10,10 +10,9 @@ use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::model::file_name;
 use crate::app::panes::{Pane, PaneContext};
-use crate::app::widgets::within_view;
+use crate::app::widgets::{notice_ui, severity_color, within_view};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 use impactlab_sweep::atlas::{Atlas, Axis, Measure};
 
 /// Largest width of a closed list, points.
@@ -56,12 +55,12 @@ fn case_ui(
     let Some((name, why_none)) = session.case_at_hand() else { return };
     ui.strong("The case at hand");
     ui.add(Label::new(RichText::new(format!("{name}, in Scenario")).weak()).wrap());
-    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let warning = severity_color(ui, Severity::Warning);
     let wrapped = |ui: &mut Ui, text: RichText| drop(ui.add(Label::new(text).wrap()));
     let inputs = session.case_inputs(atlas, units);
     if let Some(why) = why_none {
         let text = format!("No PIT, so that it has no place in this atlas: {why}.");
-        wrapped(ui, RichText::new(text).color(warning));
+        notice_ui(ui, Severity::Warning, text);
     }
     Grid::new("case in the atlas").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
         for CaseInput { label, value, beyond } in &inputs {
@@ -116,8 +115,7 @@ fn source_ui(ui: &mut Ui, view: &AtlasView, session: &AtlasSession, commands: &m
             ui.add(Label::new(RichText::new(text).weak()).wrap()).on_hover_text(digest);
         }
         (None, Some(why)) if view.file.is_some() => {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-            ui.add(Label::new(RichText::new(why).color(color)).wrap());
+            notice_ui(ui, Severity::Error, why);
         }
         (None, Some(_)) => drop(ui.weak("There is none in this version.")),
         (None, None) => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Reading…")))),

@@ -15,12 +15,12 @@ use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    bad_cases_ui, cost_ui, dataset_choice, facts_text, facts_ui, no_dataset_ui, restrictions_ui,
+    bad_cases_ui, cost_ui, dataset_choice, facts_text, facts_ui, no_dataset_ui, notice_ui,
+    restrictions_ui,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 use impactlab_study::facts::{Fact, FactWriter, Term, Value};
 use impactlab_study::{EvaluateForceReport, EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
 
@@ -37,8 +37,7 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             cost_ui(ui, &mut session.costs, CostPlace::ForceEvaluation, "Evaluation");
         }
         if let Some(problem) = force.evaluation.problem() {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-            ui.colored_label(color, format!("Not evaluated: {problem}"));
+            notice_ui(ui, Severity::Error, format!("Not evaluated: {problem}"));
             return;
         }
         let latest = force.evaluation.latest.as_ref();
@@ -139,13 +138,12 @@ fn heading_ui(
             ui.ctx().copy_text(caveats.appended_to(text));
         }
     });
-    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     restrictions_ui(ui, caveats, units);
     for problem in &evaluation.problems {
-        ui.colored_label(color, problem);
+        notice_ui(ui, Severity::Warning, problem);
     }
     for why in &report.left_out {
-        ui.colored_label(color, format!("Left out: {why}"));
+        notice_ui(ui, Severity::Warning, format!("Left out: {why}"));
     }
 }
 

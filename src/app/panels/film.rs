@@ -1,12 +1,12 @@
 //! The form that asks how a film of the scene is to be made.
 
-use egui::{Grid, RichText, Ui};
+use egui::{Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::film::FilmForm;
 use crate::app::output::Output;
-use crate::app::widgets::{count_field, quantity_field, quantity_value};
+use crate::app::widgets::{count_field, notice_ui, quantity_field, quantity_value};
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
 use impactlab_core::ranges::{FILM_RATE, FILM_SIDE, FILM_SPEED, INSTANT};
@@ -14,7 +14,6 @@ use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::FilmTiming;
 use impactlab_draw::Canvas;
 use impactlab_draw::film::Film;
-use impactlab_draw::theme;
 
 /// Sizes that are offered, pixels.
 const SIZES: [[u32; 2]; 3] = [[1280, 720], [1920, 1080], [3840, 2160]];
@@ -134,8 +133,7 @@ fn summary_ui(ui: &mut Ui, film: &Film) -> bool {
             true
         }
         Err(error) => {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-            ui.label(RichText::new(error_chain(&error)).color(color));
+            notice_ui(ui, Severity::Error, error_chain(&error));
             false
         }
     }

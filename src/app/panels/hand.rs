@@ -1,15 +1,16 @@
 //! The “By hand” pane: a method, its inputs with their standard deviations, and what it gives, beside the
 //! reconstruction.
 
-use egui::{Button, ComboBox, Grid, Label, RichText, ScrollArea, Ui};
+use egui::{Button, ComboBox, Grid, Label, ScrollArea, Ui};
 
 use crate::app::looks;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{EmptyField, PointRows, caveats_ui, facts_ui, optional_quantity};
+use crate::app::widgets::{
+    EmptyField, PointRows, caveats_ui, facts_ui, notice_ui, optional_quantity,
+};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::HAND_COORDINATE;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 use impactlab_reconstruct::evidence::{Evidence, Mark, Stated};
 use impactlab_reconstruct::hand::{HandDefault, HandField, HandInputs, HandMethod};
 use impactlab_study::HandRequest;
@@ -49,10 +50,7 @@ pub fn hand_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.add_space(looks::PART);
         match &session.hand.answer {
             None => drop(ui.spinner()),
-            Some(Err(problem)) => {
-                let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-                ui.add(Label::new(RichText::new(problem).color(color)).wrap());
-            }
+            Some(Err(problem)) => drop(notice_ui(ui, Severity::Warning, problem)),
             Some(Ok(answer)) => {
                 let report = &answer.report;
                 super::faded_if(ui, session.hand.is_late(), |ui| {

@@ -7,8 +7,8 @@ use crate::app::model::file_name;
 use crate::app::project::Project;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, Subject};
+use crate::app::widgets::notice_ui;
 use impactlab_core::data::Severity;
-use impactlab_draw::theme;
 use impactlab_study::SimulateAnswer;
 
 /// Share of its colour that an answer keeps which is not of what is asked any more.
@@ -38,9 +38,7 @@ pub(super) fn analysis_or_hint<'a>(
     match &session.analysis.answer {
         Some(Ok(answer)) => return Some(answer),
         Some(Err(error)) => {
-            let dark = ui.visuals().dark_mode;
-            let color = theme::severity_color(Severity::Error, dark);
-            ui.colored_label(color, format!("Not computed: {error}"));
+            notice_ui(ui, Severity::Error, format!("Not computed: {error}"));
         }
         None if session.analysis.is_waiting()
             || session.sources.iter().any(|s| !s.is_settled()) =>
@@ -84,8 +82,7 @@ fn nothing_asked_ui(
             }
         }
         (Some(Content::Failed(why)), _) => {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-            ui.colored_label(color, format!("{name} is not read: {why}"));
+            notice_ui(ui, Severity::Error, format!("{name} is not read: {why}"));
             ui.label("The Data workspace says more, and has what else can be chosen.");
         }
         (Some(Content::Dataset(checked)), Some(Subject::Case { case, .. }))

@@ -17,13 +17,12 @@ use crate::app::response::ComparisonStatus;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
     bad_cases_ui, caveats_ui, config_field, cost_ui, count_field, dataset_choice, no_dataset_ui,
-    seed_field, written_field,
+    notice_ui, seed_field, written_field,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::model_name;
-use impactlab_draw::theme;
 use impactlab_networks::response::evaluate::{ComparisonTable, all_tables, paper_metrics};
 use impactlab_study::facts::FactWriter;
 use impactlab_study::{Answer, CompareReport, EvaluatedCases};
@@ -54,8 +53,7 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 ui.weak("The 4DOF model by the data sheet and tuned by particle swarm, a plain network, and the response network: fitted to the same trajectories, asked about the same others. Takes some minutes a choice; or open a comparison.json that `impactlab compare --out` has written.");
             }
             Some(Err(problem)) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, format!("Not compared: {problem}"));
+                notice_ui(ui, Severity::Error, format!("Not compared: {problem}"));
             }
             Some(Ok(answer)) => {
                 let report = &answer.report;
@@ -209,9 +207,8 @@ fn heading_ui(
         }
     });
     caveats_ui(ui, &report.caveats, units, commands);
-    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for why in &report.left_out {
-        ui.colored_label(color, format!("Left out: {why}"));
+        notice_ui(ui, Severity::Warning, format!("Left out: {why}"));
     }
     let of_paper = comparison.models.iter().filter_map(|model| {
         let paper = paper_metrics(model.kind, model.trajectories)?;

@@ -25,8 +25,8 @@ use crate::app::response::{
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
 use crate::app::widgets::{
-    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, seed_field,
-    sentences_ui,
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, notice_ui,
+    seed_field, sentences_ui,
 };
 use impactlab_core::data::{Severity, TimeSeries};
 use impactlab_core::ranges::DRAWS;
@@ -35,7 +35,7 @@ use impactlab_document::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_readout,
     forecast_scene_figure, forecast_surroundings,
 };
-use impactlab_draw::{FigureOptions, theme};
+use impactlab_draw::FigureOptions;
 use impactlab_study::analysis::Analysis;
 use impactlab_study::{ForceSource, MotionSource, PredictMotionAnswer, PredictMotionReport};
 
@@ -104,8 +104,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             match &session.response.forecast.answer {
                 Some(Ok(_)) => {}
                 Some(Err(problem)) => {
-                    let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                    ui.colored_label(color, format!("No forecast: {problem}"));
+                    notice_ui(ui, Severity::Error, format!("No forecast: {problem}"));
                 }
                 None if session.response.forecast.is_waiting() => {
                     drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Forecasting…"))));
@@ -194,8 +193,8 @@ fn model_ui(ui: &mut Ui, response: &ResponseSession, commands: &mut Vec<Command>
     );
     model_row_ui(ui, &response.model, &hint, commands);
     if record.train.is_empty() {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(color, "Pre-trained on simulations alone: no better than the 4DOF model.");
+        let text = "Pre-trained on simulations alone: no better than the 4DOF model.";
+        notice_ui(ui, Severity::Warning, text);
     }
 }
 
@@ -231,15 +230,15 @@ fn force_ui(ui: &mut Ui, project: &mut Project, session: &Session, commands: &mu
     });
     let answer = session.response.forecast.ok();
     if answer.is_some_and(|answer| !answer.is_predicted()) {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
         if session.force.model.current.is_none() {
-            ui.colored_label(color, "There is no force model: the given force is shown.");
+            let text = "There is no force model: the given force is shown.";
+            notice_ui(ui, Severity::Warning, text);
             if ui.button("Open a force model…").clicked() {
                 commands.push(Command::Ask(Purpose::OpenModel));
             }
         } else {
             let text = "The collision is not known here, so that its force cannot be predicted: the given force is shown.";
-            ui.colored_label(color, text);
+            notice_ui(ui, Severity::Warning, text);
         }
     }
 }
@@ -290,8 +289,7 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
 /// Draws what the bands mean, or that they are those of a first, rough forecast, in one line.
 fn bands_line_ui(ui: &mut Ui, is_coarse: bool, input: &MotionForecastFigure<'_>) {
     if is_coarse {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(color, COARSE);
+        notice_ui(ui, Severity::Warning, COARSE);
     } else {
         let cut = input.cut().map(|cut| format!(" Curves over time run {cut}."));
         ui.weak(format!("{ABOUT_BANDS}{}", cut.unwrap_or_default()));

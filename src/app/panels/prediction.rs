@@ -11,12 +11,13 @@ use crate::app::panels::prediction_form::{COLLISION_NOT_KNOWN, form_ui};
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
 use crate::app::widgets::{
-    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, seed_field,
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, notice_ui,
+    seed_field,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::SAMPLES;
 use impactlab_document::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
-use impactlab_draw::{FigureOptions, theme};
+use impactlab_draw::FigureOptions;
 use impactlab_networks::force::metrics::BAND_LEVELS;
 use impactlab_study::analysis::pulse_curves;
 use impactlab_study::{PredictForceAnswer, PredictForceRequest};
@@ -60,8 +61,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
             None => drop(ui.label(COLLISION_NOT_KNOWN)),
             Some(Err(problem)) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, format!("Not predicted: {problem}"));
+                notice_ui(ui, Severity::Error, format!("Not predicted: {problem}"));
             }
             Some(Ok(answer)) => {
                 choices_ui(ui, view, &mut project.predict_force);

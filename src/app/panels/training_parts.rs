@@ -12,10 +12,9 @@ use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, duration_text};
+use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, duration_text, notice_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 use impactlab_study::TrainingOptions;
 
 /// Draws the buttons and the progress of a training, the current model, and the losses. The losses
@@ -133,15 +132,12 @@ fn run_record_ui(
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    let dark = ui.visuals().dark_mode;
     if let Some(problem) = problem {
-        let color = theme::severity_color(Severity::Error, dark);
-        ui.colored_label(color, format!("Not trained: {problem}"));
+        notice_ui(ui, Severity::Error, format!("Not trained: {problem}"));
     }
     let Some((left_out, caveats)) = notes else { return };
     for why in left_out {
-        let color = theme::severity_color(Severity::Warning, dark);
-        ui.colored_label(color, format!("Left out: {why}"));
+        notice_ui(ui, Severity::Warning, format!("Left out: {why}"));
     }
     assumptions_ui(ui, caveats, units, commands);
 }
