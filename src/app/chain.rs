@@ -9,11 +9,11 @@ use crate::app::model::file_name;
 use crate::app::panes::Pane;
 use crate::app::response::MotionAnswer;
 use crate::app::state::{State, Subject};
+use crate::app::widgets::severity_color;
 use impactlab_core::data::Severity;
 use impactlab_core::uncertainty::{Caveat, Caveats};
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem, percent};
 use impactlab_document::report::without_options;
-use impactlab_draw::theme;
 use impactlab_study::{Answer, SimulateReport};
 
 /// What the chain says while nothing is asked.
@@ -277,7 +277,7 @@ fn link_ui(ui: &mut Ui, link: &Link, commands: &mut Vec<Command>) {
         (None, false) => "–",
     };
     let text = RichText::new(format!("{}: {figure}", link.title));
-    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let warning = severity_color(ui, Severity::Warning);
     let text = match (link.is_late || link.figure.is_none(), link.warnings.is_empty()) {
         (true, _) => text.weak(),
         (false, true) => text,

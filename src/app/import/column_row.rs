@@ -3,9 +3,9 @@
 use egui::{ComboBox, RichText, Ui};
 
 use crate::app::import::choices::{ColumnChoice, Held};
+use crate::app::widgets::severity_color;
 use impactlab_core::data::{Channel, FormulaPart, Severity};
 use impactlab_core::units::Quantity;
-use impactlab_draw::theme;
 
 /// What can be assigned to a column, in the order of the dialog's lists, with what it is.
 const CHOICES: [(Held, &str); 24] = [
@@ -71,7 +71,7 @@ pub(super) fn column_ui(ui: &mut Ui, column: &mut ColumnChoice) {
     };
     let units = channel.quantity().units().iter().chain(impulses);
     ui.horizontal(|ui| {
-        let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        let warning = severity_color(ui, Severity::Warning);
         let selected = match column.unit {
             Some(unit) => RichText::new(unit.symbol),
             None => RichText::new(NO_UNIT).color(warning),

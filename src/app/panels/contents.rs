@@ -6,8 +6,8 @@ use crate::app::command::Command;
 use crate::app::contents::{ContentsEntry, Group};
 use crate::app::looks::{self, Icon};
 use crate::app::panes::PaneContext;
+use crate::app::widgets::severity_color;
 use impactlab_core::data::Severity;
-use impactlab_draw::theme;
 
 /// Draws the parts of the case; a click on one shows the panel in which it is changed.
 pub fn contents_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -16,7 +16,7 @@ pub fn contents_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         for &group in Group::ALL {
             let entries: Vec<_> = contents.iter().filter(|entry| entry.group == group).collect();
             let n_missing = entries.iter().filter(|entry| entry.missing.is_some()).count();
-            let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+            let warning = severity_color(ui, Severity::Warning);
             let title = match n_missing {
                 0 => RichText::new(group.title()),
                 1 => RichText::new(format!("{}: 1 open point", group.title())).color(warning),
@@ -40,7 +40,7 @@ fn entry_ui(ui: &mut Ui, entry: &ContentsEntry, commands: &mut Vec<Command>) {
         true => entry.label.clone(),
         false => format!("{}: {}", entry.label, entry.detail),
     };
-    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let warning = severity_color(ui, Severity::Warning);
     let text = match entry.missing {
         Some(_) => RichText::new(text).color(warning),
         None => RichText::new(text),

@@ -24,13 +24,12 @@ use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_simulations};
-use crate::app::widgets::{OUTDATED, restrictions_ui};
+use crate::app::widgets::{OUTDATED, restrictions_ui, severity_color};
 use impactlab_core::data::Severity;
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
 use impactlab_document::scene::{FilmTiming, ForecastScene, Scene};
 use impactlab_draw::scene::{CameraKey, Follow, ScenePicture, ViewKind, scene_view_ui};
-use impactlab_draw::theme;
 use impactlab_study::RestState;
 
 /// Seconds of the motion that can be played in a second.
@@ -377,7 +376,7 @@ fn mark_contacts(
         let share = (time_s / end_s).clamp(0.0, 1.0) as f32;
         slider.rect.left() + inset + share * (width - 2.0 * inset).max(0.0)
     };
-    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let color = severity_color(ui, Severity::Warning);
     let y = slider.rect.bottom() - 1.0;
     for [from_s, to_s] in contacts_s {
         let (from, to) = (x(*from_s), x(*to_s));

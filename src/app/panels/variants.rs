@@ -6,9 +6,9 @@ use crate::app::case::VariantCommand;
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::variants::AnsweredVariant;
+use crate::app::widgets::severity_color;
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
-use impactlab_draw::theme;
 use impactlab_study::analysis::MotionOutcome;
 use impactlab_study::facts::{FactWriter, Term};
 
@@ -98,14 +98,14 @@ fn row_ui(
         }
     };
     if let Some(problem) = &variant.problem {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        let color = severity_color(ui, Severity::Error);
         ui.colored_label(color, "not computed").on_hover_text(problem);
         // All columns but those of the name, what differs, the problem and the notes.
         (0..COLUMNS.len() - 4).for_each(|_| drop(ui.label("")));
     } else {
         show(ui, &[turn, x, y, heading]);
         let texts = warning_texts(variant, units);
-        let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        let warning = severity_color(ui, Severity::Warning);
         match texts.is_empty() {
             true => ui.label(warnings),
             false => ui.colored_label(warning, warnings).on_hover_text(texts.join("\n")),

@@ -4,11 +4,10 @@ use egui::{Color32, Frame, Label, Margin, RichText, Sense, TextStyle, Ui};
 
 use crate::app::command::Command;
 use crate::app::looks::{self, Icon};
-use crate::app::widgets::assumptions_ui;
+use crate::app::widgets::{assumptions_ui, severity_color};
 use impactlab_core::uncertainty::{Caveat, CaveatQuantity, Caveats};
 use impactlab_core::units::{NumberFormat, UnitSystem, three_digits};
 use impactlab_document::report::without_options;
-use impactlab_draw::theme;
 
 /// Opacity of the fill of a chip, 0 to 1.
 const FILL: f32 = 0.16;
@@ -52,7 +51,7 @@ fn chip_ui(ui: &mut Ui, caveat: &Caveat, units: UnitSystem) {
         true => (caveat.severity, Icon::TriangleAlert),
         false => (caveat.severity, Icon::Info),
     };
-    let color = theme::severity_color(severity, ui.visuals().dark_mode);
+    let color = severity_color(ui, severity);
     let frame = Frame::new()
         .fill(color.gamma_multiply(FILL))
         .stroke((1.0, color))

@@ -9,8 +9,8 @@ use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::state::Session;
 use crate::app::unfinished::Unfinished;
+use crate::app::widgets::severity_color;
 use impactlab_core::data::Severity;
-use impactlab_draw::theme;
 
 /// Whether there is a training that can go on, or a checkpoint that cannot be used.
 pub fn has_something(session: &Session) -> bool {
@@ -29,7 +29,7 @@ pub fn unfinished_ui(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>
         let how = how_it_was_made(&of.note.question);
         ui.weak(format!("{how}; started {}", moment_text(&of.note.started)));
     }
-    let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+    let color = severity_color(ui, Severity::Error);
     for lost in &session.unfinished.list.lost {
         ui.horizontal_wrapped(|ui| {
             ui.colored_label(color, format!("Cannot be resumed: {}", lost.reason));
@@ -86,7 +86,7 @@ pub fn interrupted_ui(ui: &mut Ui, session: &Session, commands: &mut Vec<Command
             commands.push(Command::Models(ModelsCommand::HideInterrupted));
         }
         let more = if n_more > 0 { format!(", and {n_more} more") } else { String::new() };
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        let color = severity_color(ui, Severity::Warning);
         let text = format!("{}: {}{more}", title(first), first.progress());
         ui.add(egui::Label::new(RichText::new(text).color(color)).truncate());
     });
