@@ -79,7 +79,7 @@ fn a_unit_of_the_header_stays_when_another_channel_is_chosen() {
     choose(&mut harness, ("2: Kraft [kN]", 0), "X, position along the road");
     choose(&mut harness, ("2: Kraft [kN]", 0), "F_x, force along the road");
     assert_eq!(map(&harness), "time=1:ms,fx=2:kN");
-    harness.get_by_label("• choose a column for F_y, or say that F_y is zero");
+    harness.get_by_label("choose a column for F_y, or say that F_y is zero");
     harness.get_by_label("F_y is zero throughout").click();
     harness.run_steps(2);
     settle(&mut harness);
@@ -101,7 +101,7 @@ fn a_unit_that_nobody_states_is_asked_for_before_the_file_opens() {
     settle(&mut harness);
     assert!(state(&harness).session.sources.is_empty(), "it is not opened as 60 N meanwhile");
     assert_eq!(harness.get_all_by_value("not stated: choose").count(), 2);
-    harness.get_by_label("• choose the unit of column 2, \"Fx\"");
+    harness.get_by_label("choose the unit of column 2, \"Fx\"");
     harness.get_by_label("Open with these columns").click();
     harness.run_steps(4);
     assert!(state(&harness).session.dialogs.import().is_some(), "the button does nothing yet");

@@ -101,7 +101,7 @@ fn latitude_and_longitude_and_a_quaternion_can_be_chosen() {
     let mut harness = open(&[&name]);
     settle(&mut harness);
     choose(&mut harness, ("2: Breite", 0), "Latitude, degrees to the north");
-    harness.get_by_label("• choose the column of the longitude");
+    harness.get_by_label("choose the column of the longitude");
     choose(&mut harness, ("3: L\u{e4}nge", 0), "Longitude, degrees to the east");
     for (column, entry) in [
         ("4: a", "Quaternion w, real part"),

@@ -11,12 +11,12 @@ use crate::app::import::dialog::ImportDialog;
 use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
+use crate::app::widgets::notice_ui;
 use impactlab_core::data::{
     Channel, ColumnMap, DeckUnits, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
     Table, VelocityAxes, VelocityFit,
 };
 use impactlab_core::ranges::{CONTACT_X, CONTACT_Y};
-use impactlab_draw::theme;
 
 /// Size of the dialog and of its parts, points.
 const WIDTH: f32 = 1060.0;
@@ -34,7 +34,7 @@ const LINES_HEIGHT: f32 = 110.0;
 const COLUMNS_HEIGHT: f32 = 220.0;
 
 /// What is said of a force that points out of the vehicle at its contact point.
-const PULLS: &str = "• the force pulls at the contact point instead of pushing into the vehicle; change the \
+const PULLS: &str = "the force pulls at the contact point instead of pushing into the vehicle; change the \
                      sign of its components or the contact point";
 
 impl ImportDialog {
@@ -75,8 +75,7 @@ impl ImportDialog {
         let table = match &self.table {
             Some((_, Ok(table))) => Some(Arc::clone(table)),
             Some((_, Err(problem))) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, problem);
+                notice_ui(ui, Severity::Error, problem);
                 None
             }
             None => {
@@ -374,8 +373,7 @@ impl ImportDialog {
             }
         });
         if preview.impulse_n_s.is_some_and(|impulse_n_s| said.pulls(impulse_n_s)) {
-            let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-            ui.colored_label(color, PULLS);
+            notice_ui(ui, Severity::Warning, PULLS);
         }
     }
 

@@ -1,35 +1,33 @@
 //! Draws the right side of the import dialog: the curve as it will be read, its numbers, what is doubtful about
 //! them, and buttons that correct it.
 
-use egui::{Button, Color32, Grid, Ui};
+use egui::{Button, Grid, Ui};
 
 use crate::app::import::dialog::ImportDialog;
+use crate::app::widgets::notice_ui;
 use impactlab_core::data::{Correction, FileKind, Severity};
-use impactlab_draw::{FigureOptions, figure_ui, theme};
+use impactlab_draw::{FigureOptions, figure_ui};
 
 const CURVE_HEIGHT: f32 = 260.0;
 
 impl ImportDialog {
     /// Draws the curve with its numbers and what is doubtful about them, or what has to be said first.
     pub(super) fn preview_ui(&mut self, ui: &mut Ui) {
-        let is_dark = ui.visuals().dark_mode;
-        let [warning, error] = [Severity::Warning, Severity::Error]
-            .map(|severity| theme::severity_color(severity, is_dark));
         let questions = self.choices.open_questions();
         let mut chosen = None;
         if !questions.is_empty() && matches!(self.table, Some((_, Ok(_)))) {
             ui.strong("To be said before the file can be opened");
             for question in questions {
-                ui.colored_label(warning, format!("• {question}"));
+                notice_ui(ui, Severity::Warning, question);
             }
         } else {
             match &self.preview {
                 None => drop(ui.weak("the curve as it will be read")),
                 Some((_, Err(refusal))) => {
-                    ui.colored_label(error, &refusal.text);
+                    notice_ui(ui, Severity::Error, &refusal.text);
                     chosen = buttons_ui(ui, &refusal.corrections);
                 }
-                Some((_, Ok(_))) => chosen = self.curve_ui(ui, warning),
+                Some((_, Ok(_))) => chosen = self.curve_ui(ui),
             }
         }
         if let Some(correction) = chosen {
@@ -41,7 +39,7 @@ impl ImportDialog {
     /// Draws the curve.
     ///
     /// - returns the correction that was clicked.
-    fn curve_ui(&self, ui: &mut Ui, warning: Color32) -> Option<Correction> {
+    fn curve_ui(&self, ui: &mut Ui) -> Option<Correction> {
         let Some((_, Ok(preview))) = &self.preview else { return None };
         ui.strong(match preview.kind {
             FileKind::Force => "A force, as it will be read",
@@ -65,10 +63,9 @@ impl ImportDialog {
         let mut chosen = None;
         let mut offered: Vec<Correction> = Vec::new();
         for remark in &preview.remarks {
-            let text = format!("• {}", remark.text);
             match remark.is_doubt {
-                true => ui.colored_label(warning, text),
-                false => ui.weak(text),
+                true => notice_ui(ui, Severity::Warning, &remark.text),
+                false => ui.weak(format!("• {}", remark.text)),
             };
             // What corrects two remarks stands below the first of them.
             let is_new = |correction: &&Correction| !offered.contains(correction);

@@ -4,10 +4,10 @@ use egui::{Button, ComboBox, Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::crash_test::{CrashTestCommand, CrashTestForm};
+use crate::app::widgets::notice_ui;
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_draw::theme;
 
 /// Width of the form, points.
 const WIDTH: f32 = 560.0;
@@ -39,13 +39,13 @@ pub fn crash_test_ui(
         ui.end_row();
     });
     let is_editable = form.editable.contains(&form.role);
-    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for doubt in &form.doubts {
-        ui.colored_label(color, format!("• {doubt}"));
+        notice_ui(ui, Severity::Warning, doubt);
     }
     if !is_editable {
         let label = form.role.label();
-        ui.colored_label(color, format!("• no {label} is chosen whose data can be edited"));
+        let text = format!("no {label} is chosen whose data can be edited");
+        notice_ui(ui, Severity::Warning, text);
     }
     ui.separator();
     ui.horizontal(|ui| {

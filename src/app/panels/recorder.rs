@@ -5,10 +5,10 @@ use egui::{Button, ComboBox, Grid, Ui};
 use crate::app::command::Command;
 use crate::app::panels::replay::REPLAY;
 use crate::app::recorder::{RecorderCommand, RecorderForm, title};
+use crate::app::widgets::notice_ui;
 use impactlab_core::collision::Role;
 use impactlab_core::data::{RecordedDeltaV, RecordedSpeed, RecorderRecord, Severity};
 use impactlab_core::units::{Quantity, UnitSystem};
-use impactlab_draw::theme;
 
 /// Width of the form, points.
 const WIDTH: f32 = 640.0;
@@ -32,9 +32,8 @@ pub fn recorder_ui(
             ui.end_row();
         }
     });
-    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for doubt in &record.doubts {
-        ui.colored_label(color, format!("• {doubt}"));
+        notice_ui(ui, Severity::Warning, doubt);
     }
     ui.separator();
     ui.horizontal_wrapped(|ui| {
