@@ -7,7 +7,8 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panes::{Pane, PaneContext};
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, notice_ui};
+use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::FigureOptions;
 use impactlab_sweep::atlas::Atlas;
@@ -28,8 +29,7 @@ pub fn atlas_map_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     ui.add(Label::new(RichText::new(LEGEND).weak()).wrap());
     if let Some(warning) = session.atlas.warning() {
-        let color = ui.visuals().warn_fg_color;
-        ui.add(Label::new(RichText::new(warning).color(color)).wrap());
+        notice_ui(ui, Severity::Warning, warning);
     }
     let maps = session.atlas.maps();
     let height = (ui.available_height() - TITLE_HEIGHT - READOUT_HEIGHT).max(MIN_PLOT_HEIGHT);

@@ -8,8 +8,9 @@ use crate::app::case_table::{CaseTable, listed_in};
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Subject, View};
+use crate::app::widgets::{notice_ui, severity_color};
+use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 
 /// Height of a row of the table, points.
 const ROW_HEIGHT: f32 = 20.0;
@@ -35,7 +36,7 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     if let Some(error) = table.error {
-        ui.colored_label(ui.visuals().error_fg_color, error.to_string());
+        notice_ui(ui, Severity::Error, error.to_string());
         return;
     }
     let subject = project.subject();
@@ -166,7 +167,7 @@ impl Table<'_> {
         row.col(|ui| drop(ui.label(case.name)));
         row.col(|ui| {
             for flag in case.flags {
-                let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
+                let color = severity_color(ui, flag.severity);
                 ui.colored_label(color, flag.kind.label()).on_hover_text(flag.to_string());
             }
         });

@@ -14,9 +14,9 @@ use crate::app::project::Project;
 use crate::app::shipped_datasets;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Subject, View};
+use crate::app::widgets::{notice_ui, severity_color};
 use impactlab_core::data::{DatasetKind, FileKind, Severity};
 use impactlab_core::error_chain;
-use impactlab_draw::theme;
 use impactlab_study::{CheckedDataset, CheckedFile};
 
 /// Largest number of problems of one data set that are listed; of further ones the number is shown.
@@ -90,7 +90,7 @@ fn source_ui(
             file_ui(ui, source, file, selected, commands);
         }
         Content::Failed(why) => {
-            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+            let color = severity_color(ui, Severity::Error);
             let header = RichText::new(format!("{} (not read)", source.name())).color(color);
             let header = CollapsingHeader::new(header).id_salt(&source.path);
             let response = header.show(ui, |ui| {
@@ -157,7 +157,7 @@ fn dataset_ui(
         }
         match &checked.vehicle {
             Some(Ok(vehicle)) => drop(ui.weak(format!("vehicle: {vehicle}"))),
-            Some(Err(error)) => problem_ui(ui, error),
+            Some(Err(error)) => drop(notice_ui(ui, Severity::Error, error)),
             None => {}
         }
         let problems = &dataset.problems;
@@ -165,7 +165,7 @@ fn dataset_ui(
             let title = format!("{} problems", problems.len());
             CollapsingHeader::new(title).id_salt((&source.path, "problems")).show(ui, |ui| {
                 for problem in problems.iter().take(SHOWN_PROBLEMS) {
-                    problem_ui(ui, &error_chain(problem));
+                    notice_ui(ui, Severity::Error, error_chain(problem));
                 }
                 if problems.len() > SHOWN_PROBLEMS {
                     ui.weak(format!("and {} more", problems.len() - SHOWN_PROBLEMS));
@@ -216,14 +216,9 @@ fn file_ui(
         ui.indent((&source.path, "replay"), |ui| replay_button_ui(ui, &source.path, commands));
     }
     for flag in &file.flags {
-        let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
-        ui.indent((&source.path, flag.to_string()), |ui| ui.colored_label(color, flag.to_string()));
+        let text = flag.to_string();
+        ui.indent((&source.path, &text), |ui| notice_ui(ui, flag.severity, &text));
     }
-}
-
-fn problem_ui(ui: &mut Ui, text: &str) {
-    let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-    ui.colored_label(color, text);
 }
 
 /// Adds the context menu with which a data set or a file is loaded again or closed.

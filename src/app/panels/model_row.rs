@@ -8,8 +8,8 @@ use crate::app::dialog::Purpose;
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
 use crate::app::output::Output;
+use crate::app::widgets::{notice_ui, severity_color};
 use impactlab_core::data::Severity;
-use impactlab_draw::theme;
 use impactlab_study::MODEL_ENDING;
 use impactlab_study::ModelChoice;
 
@@ -33,8 +33,7 @@ pub fn no_model_ui<M: TrainedModel>(
         "{use_of_it} Open one (a file ending in .{MODEL_ENDING}), or train one on data of your own."
     ));
     if let Some(problem) = &model.problem {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(color, problem);
+        notice_ui(ui, Severity::Warning, problem);
     }
     ui.horizontal_wrapped(|ui| {
         if ui.button("Open model…").clicked() {
@@ -77,8 +76,7 @@ pub fn model_row_ui<M: TrainedModel>(
         }
     });
     if let Some(problem) = &model.problem {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-        ui.colored_label(color, format!("Not opened: {problem}"));
+        notice_ui(ui, Severity::Error, format!("Not opened: {problem}"));
     }
 }
 
@@ -105,8 +103,7 @@ pub fn save_model_ui<M: TrainedModel>(
         let text = RichText::new(&current.name);
         ui.label(if current.is_saved { text } else { text.italics() });
         if !current.is_saved {
-            let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-            ui.colored_label(color, "not saved");
+            ui.colored_label(severity_color(ui, Severity::Warning), "not saved");
         }
         if ui.button("Open model…").clicked() {
             commands.push(Command::Ask(Purpose::OpenModel));

@@ -12,10 +12,9 @@ use crate::app::network::Network;
 use crate::app::output::Output;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
-use crate::app::widgets::facts_ui;
+use crate::app::widgets::{facts_ui, notice_ui, severity_color};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
-use impactlab_draw::theme;
 use impactlab_study::facts::Term;
 
 /// Number of figures that are shown of an entry without unfolding it.
@@ -52,12 +51,11 @@ fn summary_ui(ui: &mut Ui, archive: &ArchiveStatus) {
     let (n, bytes) = (archive.list.entries.len(), archive.bytes());
     let limit = bytes_text(LIMIT_BYTES);
     if bytes > LIMIT_BYTES {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
         let text = format!(
             "{n} kept, {}: more than {limit}. Nothing is removed by itself; remove what you do not need.",
             bytes_text(bytes)
         );
-        ui.colored_label(color, text);
+        notice_ui(ui, Severity::Warning, text);
     } else if n > 0 {
         ui.weak(format!(
             "{n} kept, {} of {limit}; nothing is removed by itself.",
@@ -68,7 +66,7 @@ fn summary_ui(ui: &mut Ui, archive: &ArchiveStatus) {
 
 fn problem_ui(ui: &mut Ui, problem: &ArchiveProblem, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        let color = severity_color(ui, Severity::Error);
         ui.colored_label(color, format!("Cannot be used: {}", problem.reason));
         if let Some(first) = problem.files.first()
             && ui.small_button("Remove…").clicked()
@@ -95,14 +93,13 @@ fn entry_ui(
         None => None,
     };
     let is_in_use = wanted == Some(path.as_path());
-    let dark = ui.visuals().dark_mode;
     ui.horizontal_wrapped(|ui| {
         ui.strong(&entry.name);
         if is_in_use {
-            ui.colored_label(theme::severity_color(Severity::Info, dark), "in use");
+            ui.colored_label(severity_color(ui, Severity::Info), "in use");
         }
         if entry.is_cancelled {
-            ui.colored_label(theme::severity_color(Severity::Warning, dark), "cancelled");
+            ui.colored_label(severity_color(ui, Severity::Warning), "cancelled");
         }
         let (kind, moment) = (entry.kind.label(), entry.finished_text());
         ui.weak(format!("{kind}, {moment}, {}", bytes_text(entry.bytes)));
