@@ -22,7 +22,7 @@ use crate::app::state::State;
 use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::{duration_text, severity_color, severity_icon};
+use crate::app::widgets::{severity_color, severity_icon, with_time_left};
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::Severity;
 use impactlab_core::jobs::{Job, Progress};
@@ -376,8 +376,7 @@ fn training_job_ui<M: TrainedModel>(
     let what = format!("{}{paused}{part}", M::NETWORK.label());
     match status.progress() {
         (Some(fraction), left) => {
-            let left = left.map_or(String::new(), |t| format!(": {} left", duration_text(t)));
-            job_bar_ui(ui, fraction, &format!("{what}{left}"));
+            job_bar_ui(ui, fraction, &with_time_left(&what, left));
         }
         (None, _) => drop((ui.spinner(), ui.label(what))),
     }
@@ -408,11 +407,10 @@ fn progress_ui(
     if ui.small_button("Cancel").clicked() {
         commands.push(cancel);
     }
-    let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
     match progress.fraction() {
         Some(fraction) => {
-            let text = format!("{what}: {:.0} %{left}", 100.0 * fraction);
-            job_bar_ui(ui, fraction, &text);
+            let text = format!("{what}: {:.0} %", 100.0 * fraction);
+            job_bar_ui(ui, fraction, &with_time_left(&text, left));
         }
         None => drop((ui.spinner(), ui.label(what))),
     }

@@ -11,7 +11,7 @@ use crate::app::import::dialog::ImportDialog;
 use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
-use crate::app::widgets::notice_ui;
+use crate::app::widgets::{notice_ui, working_ui};
 use impactlab_core::data::{
     Channel, ColumnMap, DeckUnits, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
     Table, VelocityAxes, VelocityFit,
@@ -79,8 +79,7 @@ impl ImportDialog {
                 None
             }
             None => {
-                ui.horizontal(|ui| (ui.spinner(), ui.label("reading the file")));
-                return;
+                return working_ui(ui, "reading the file");
             }
         };
         let read = table.as_ref().map(|table| (table.has_header(), table.header_line()));

@@ -10,7 +10,7 @@ use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::model::file_name;
 use crate::app::panes::{Pane, PaneContext};
-use crate::app::widgets::{notice_ui, severity_color, within_view};
+use crate::app::widgets::{notice_ui, severity_color, within_view, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_sweep::atlas::{Atlas, Axis, Measure};
@@ -118,7 +118,7 @@ fn source_ui(ui: &mut Ui, view: &AtlasView, session: &AtlasSession, commands: &m
             notice_ui(ui, Severity::Error, why);
         }
         (None, Some(_)) => drop(ui.weak("There is none in this version.")),
-        (None, None) => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Reading…")))),
+        (None, None) => working_ui(ui, "Reading…"),
     }
     ui.horizontal_wrapped(|ui| {
         if ui.add(icon_button(Icon::FolderOpen, "Open an atlas…")).clicked() {

@@ -7,7 +7,7 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panes::{Pane, PaneContext};
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, notice_ui};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, notice_ui, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::FigureOptions;
@@ -86,8 +86,7 @@ fn readout_ui(
 /// Draws what an atlas is and how to get one.
 fn no_atlas_ui(ui: &mut Ui, session: &AtlasSession, commands: &mut Vec<Command>) {
     if session.problem().is_none() {
-        ui.horizontal(|ui| (ui.spinner(), ui.label("Reading the atlas…")));
-        return;
+        return working_ui(ui, "Reading the atlas…");
     }
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(TEXT_WIDTH.min(ui.available_width()));

@@ -1,10 +1,10 @@
 //! The form that asks how a point cloud becomes a site.
 
-use egui::{ComboBox, Grid, ProgressBar, TextEdit, Ui};
+use egui::{ComboBox, Grid, TextEdit, Ui};
 
 use crate::app::command::Command;
 use crate::app::ground::{CloudForm, GroundCommand};
-use crate::app::widgets::quantity_field;
+use crate::app::widgets::{quantity_field, run_progress_ui};
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::PIXEL_SIZE;
 use impactlab_core::site::LengthUnit;
@@ -24,8 +24,7 @@ pub fn cloud_ui(
     ui.heading("Site of a point cloud");
     ui.weak(form.path.display().to_string());
     if let Some(progress) = progress {
-        let bar = ProgressBar::new(progress.fraction().unwrap_or(0.0));
-        ui.add(bar.text(progress.message.as_str()).desired_width(420.0));
+        run_progress_ui(ui, &progress.message, progress.fraction(), None);
         if ui.button("Stop").clicked() {
             commands.push(Command::Ground(GroundCommand::StopCloud));
         }

@@ -8,7 +8,7 @@ use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{caveats_ui, facts_ui, no_dataset_ui, value_row, value_ui};
+use crate::app::widgets::{caveats_ui, facts_ui, no_dataset_ui, value_row, value_ui, working_ui};
 use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use impactlab_core::data::DatasetKind;
 use impactlab_core::numerics::Summary;
@@ -37,8 +37,7 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             dataset_ui(ui, report, view.units, commands);
         }
         if replay.is_some_and(|replay| replay.question.is_running()) {
-            ui.horizontal(|ui| (ui.spinner(), ui.label("Simulating…")));
-            return;
+            return working_ui(ui, "Simulating…");
         }
         let label = match report {
             Some(_) => "Simulate again".to_owned(),

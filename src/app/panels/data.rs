@@ -14,7 +14,7 @@ use crate::app::project::Project;
 use crate::app::shipped_datasets;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Subject, View};
-use crate::app::widgets::{notice_ui, severity_color};
+use crate::app::widgets::{notice_ui, severity_color, working_ui};
 use impactlab_core::data::{DatasetKind, FileKind, Severity};
 use impactlab_core::error_chain;
 use impactlab_study::{CheckedDataset, CheckedFile};
@@ -78,7 +78,7 @@ fn source_ui(
 ) {
     match &source.content {
         Content::Loading => {
-            ui.horizontal(|ui| (ui.spinner(), ui.label(source.name())));
+            working_ui(ui, source.name());
         }
         Content::Dataset(checked) => {
             let listed = view.listed.as_ref() == Some(&source.path);

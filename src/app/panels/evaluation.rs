@@ -11,12 +11,11 @@ use crate::app::force::{ForceSession, Statistic};
 use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::model_row::no_model_ui;
-use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
     bad_cases_ui, cost_ui, dataset_choice, facts_text, facts_ui, no_dataset_ui, notice_ui,
-    restrictions_ui,
+    restrictions_ui, run_progress_ui,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;

@@ -7,7 +7,7 @@ use crate::app::model::file_name;
 use crate::app::project::Project;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, Subject};
-use crate::app::widgets::notice_ui;
+use crate::app::widgets::{notice_ui, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_study::SimulateAnswer;
 
@@ -43,15 +43,11 @@ pub(super) fn analysis_or_hint<'a>(
         None if session.analysis.is_waiting()
             || session.sources.iter().any(|s| !s.is_settled()) =>
         {
-            working_ui(ui);
+            working_ui(ui, "Working…");
         }
         None => nothing_asked_ui(ui, &session.sources, project.subject().as_ref(), commands),
     }
     None
-}
-
-fn working_ui(ui: &mut Ui) {
-    ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));
 }
 
 /// Draws why nothing is simulated: nothing is selected, or the data of what is selected are not there.
@@ -91,6 +87,6 @@ fn nothing_asked_ui(
             ui.strong(format!("{name} has no case {case}"));
             ui.label("Choose another one in the Data workspace.");
         }
-        (Some(_), _) => working_ui(ui),
+        (Some(_), _) => working_ui(ui, "Working…"),
     }
 }

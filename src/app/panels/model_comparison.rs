@@ -11,13 +11,12 @@ use crate::app::dialog::Purpose;
 use crate::app::network::NetworkQuestions;
 use crate::app::output::Output;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
-use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::response::ComparisonStatus;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
     bad_cases_ui, caveats_ui, config_field, cost_ui, count_field, dataset_choice, no_dataset_ui,
-    notice_ui, seed_field, written_field,
+    notice_ui, run_progress_ui, seed_field, written_field,
 };
 use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::ranges::CHOICES;

@@ -8,7 +8,7 @@ use crate::app::dialog::Purpose;
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
 use crate::app::output::Output;
-use crate::app::widgets::{notice_ui, severity_color};
+use crate::app::widgets::{notice_ui, severity_color, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_study::MODEL_ENDING;
 use impactlab_study::ModelChoice;
@@ -25,8 +25,7 @@ pub fn no_model_ui<M: TrainedModel>(
 ) {
     let name = M::NETWORK.model();
     if model.is_loading() {
-        ui.horizontal(|ui| (ui.spinner(), ui.label(format!("Loading the {name}…"))));
-        return;
+        return working_ui(ui, format!("Loading the {name}…"));
     }
     ui.label(RichText::new(format!("No {name}")).strong());
     ui.label(format!(

@@ -26,7 +26,7 @@ use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
 use crate::app::widgets::{
     MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, notice_ui,
-    seed_field, sentences_ui,
+    seed_field, sentences_ui, working_ui,
 };
 use impactlab_core::data::{Severity, TimeSeries};
 use impactlab_core::ranges::DRAWS;
@@ -107,7 +107,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                     notice_ui(ui, Severity::Error, format!("No forecast: {problem}"));
                 }
                 None if session.response.forecast.is_waiting() => {
-                    drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Forecasting…"))));
+                    working_ui(ui, "Forecasting…");
                 }
                 None => {
                     ui.label("There is no force on a vehicle here. Pick a case with a force, open a force file, or set up a scenario.");

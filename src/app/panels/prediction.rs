@@ -12,7 +12,7 @@ use crate::app::panes::PaneContext;
 use crate::app::state::View;
 use crate::app::widgets::{
     MIN_PLOT_HEIGHT, TITLE_HEIGHT, caveats_ui, count_field, facts_ui, figure_frame, notice_ui,
-    seed_field,
+    seed_field, working_ui,
 };
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::SAMPLES;
@@ -53,11 +53,9 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(looks::GRID)).show(
         ui,
         |ui| match &session.force.forecast.answer {
-            None if session.force.forecast.is_waiting() => {
-                drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Predicting…"))));
-            }
+            None if session.force.forecast.is_waiting() => working_ui(ui, "Predicting…"),
             None if session.sources.iter().any(|source| !source.is_settled()) => {
-                drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Reading…"))));
+                working_ui(ui, "Reading…");
             }
             None => drop(ui.label(COLLISION_NOT_KNOWN)),
             Some(Err(problem)) => {

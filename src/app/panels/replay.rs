@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use egui::{Button, Label, ProgressBar, ScrollArea, Ui};
+use egui::{Button, Label, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -16,7 +16,7 @@ use crate::app::question_job::QuestionJob;
 use crate::app::recorder::RecorderCommand;
 use crate::app::source::{Content, Source};
 use crate::app::widgets::{
-    duration_text, facts_ui, figure_frame, notice_ui, replay_assumptions_ui, restrictions_ui,
+    facts_ui, figure_frame, notice_ui, replay_assumptions_ui, restrictions_ui, run_progress_ui,
 };
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
@@ -126,10 +126,7 @@ fn run_ui(
             commands.push(Command::Recorder(RecorderCommand::CancelReplay));
         }
         let progress = job.progress();
-        let left = job.time_left().map(duration_text);
-        let left = left.map_or(String::new(), |left| format!(", about {left} left"));
-        let text = format!("{}{left}", progress.message);
-        ui.add(ProgressBar::new(progress.fraction().unwrap_or(0.0)).text(text));
+        run_progress_ui(ui, &progress.message, progress.fraction(), job.time_left());
     });
     let is_asked = run.latest.as_ref().is_some_and(|latest| latest.question == *request);
     if let Some(problem) = run.problem().filter(|_| is_asked) {

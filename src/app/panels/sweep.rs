@@ -9,12 +9,11 @@ use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::model::file_name;
 use crate::app::output::Output;
-use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::Session;
 use crate::app::sweep::{KnownSweep, SweepCommand, SweepView, TimedRows};
 use crate::app::tasks::TaskKey;
-use crate::app::widgets::{duration_text, notice_ui};
+use crate::app::widgets::{duration_text, notice_ui, run_progress_ui, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_sweep::{Design, SweptQuestion};
 
@@ -42,7 +41,7 @@ pub fn sweep_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 work_ui(ui, sweep, (&view.sweep, session), commands);
             }
             (None, Some(why)) => drop(notice_ui(ui, Severity::Error, why)),
-            (None, None) => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Reading…")))),
+            (None, None) => working_ui(ui, "Reading…"),
         }
     });
 }

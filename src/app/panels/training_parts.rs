@@ -1,9 +1,7 @@
 //! The parts of the training pane that both networks share: buttons, progress, the resulting model
 //! and common settings.
 
-use std::time::Duration;
-
-use egui::{ProgressBar, Ui};
+use egui::Ui;
 use impactlab_core::uncertainty::Caveats;
 
 use crate::app::command::{Command, TrainingCommand};
@@ -12,7 +10,7 @@ use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, duration_text, notice_ui};
+use crate::app::widgets::{assumptions_ui, bad_cases_ui, config_field, notice_ui, run_progress_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::TrainingOptions;
@@ -102,22 +100,6 @@ fn run_buttons_ui<M: TrainedModel>(
             commands.push(Command::Train(network, TrainingCommand::Cancel));
         }
     });
-}
-
-/// Draws a progress bar with the remaining time, or a spinner while the progress is not known.
-///
-/// - `what`: what the training is doing.
-/// - `fraction`: the share that is done, 0 to 1.
-/// - `left`: the estimated remaining time.
-pub fn run_progress_ui(ui: &mut Ui, what: &str, fraction: Option<f32>, left: Option<Duration>) {
-    let left = left.map_or(String::new(), |left| format!(", {} left", duration_text(left)));
-    match fraction {
-        Some(fraction) => {
-            let bar = ProgressBar::new(fraction).desired_width(420.0);
-            ui.add(bar.text(format!("{what}{left}")));
-        }
-        None => drop(ui.horizontal(|ui| (ui.spinner(), ui.label(what)))),
-    }
 }
 
 /// Draws the messages of the latest training: the reason why it gave no model, the cases that were

@@ -10,6 +10,7 @@ mod figure_frame;
 mod notice;
 mod number;
 mod points;
+mod progress;
 mod quantity;
 mod refusal;
 mod time_figure;
@@ -25,6 +26,7 @@ pub use facts::{facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use notice::{notice_ui, severity_color, severity_icon};
 pub use points::PointRows;
+pub use progress::{run_progress_ui, with_time_left, working_ui};
 pub use quantity::{
     EmptyField, SliderRange, count_field, duration_text, optional_count, optional_quantity,
     quantity_field, quantity_slider, quantity_value, seed_field, value_row, value_ui, within_view,

@@ -12,7 +12,7 @@ use crate::app::network::Network;
 use crate::app::output::Output;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
-use crate::app::widgets::{facts_ui, notice_ui, severity_color};
+use crate::app::widgets::{facts_ui, notice_ui, severity_color, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::Term;
@@ -45,8 +45,7 @@ pub fn finished_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn summary_ui(ui: &mut Ui, archive: &ArchiveStatus) {
     if archive.is_reading() {
-        ui.horizontal(|ui| (ui.spinner(), ui.label("reading what is kept")));
-        return;
+        return working_ui(ui, "reading what is kept");
     }
     let (n, bytes) = (archive.list.entries.len(), archive.bytes());
     let limit = bytes_text(LIMIT_BYTES);

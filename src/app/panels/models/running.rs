@@ -6,9 +6,9 @@ use egui::Ui;
 
 use crate::app::command::{Command, ComparisonCommand, TrainingCommand};
 use crate::app::network::{Network, TrainedModel};
-use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::{Pane, PaneContext};
 use crate::app::training_status::TrainingStatus;
+use crate::app::widgets::run_progress_ui;
 use impactlab_core::jobs::Progress;
 
 /// Draws what is running; if nothing is, buttons that lead to the forms.

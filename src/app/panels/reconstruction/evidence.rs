@@ -1,6 +1,6 @@
 //! The “Evidence” pane: what was found, what is taken to be likely beforehand, and the run.
 
-use egui::{ProgressBar, ScrollArea, TextEdit, TextStyle, Ui, vec2};
+use egui::{ScrollArea, TextEdit, TextStyle, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -12,7 +12,7 @@ use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
 use crate::app::panes::{Pane, PaneContext};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
-use crate::app::widgets::{count_field, duration_text, notice_ui, seed_field};
+use crate::app::widgets::{count_field, notice_ui, run_progress_ui, seed_field};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evidence::Evidence;
@@ -232,15 +232,10 @@ fn progress_ui(
             command(ReconstructionCommand::Cancel);
         }
         let progress = job.progress();
-        let left = session.time_left().map(duration_text).filter(|_| !is_cancelled);
-        let left = left.map_or(String::new(), |left| format!(", about {left} left"));
-        let text = match is_cancelled {
-            true => "ending".to_owned(),
-            false => format!("{}{left}", progress.message),
+        let (what, left) = match is_cancelled {
+            true => ("ending", None),
+            false => (progress.message.as_str(), session.time_left()),
         };
-        match progress.fraction() {
-            Some(fraction) => drop(ui.add(ProgressBar::new(fraction).text(text))),
-            None => drop((ui.spinner(), ui.add(egui::Label::new(text).truncate()))),
-        }
+        run_progress_ui(ui, what, progress.fraction(), left);
     });
 }

@@ -12,7 +12,7 @@ use crate::app::panes::PaneContext;
 use crate::app::report::{MadeReport, ReportCommand, ReportView};
 use crate::app::state::Session;
 use crate::app::tasks::TaskKey;
-use crate::app::widgets::{duration_text, notice_ui, problem_line_ui};
+use crate::app::widgets::{notice_ui, problem_line_ui, with_time_left};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Language, Paper};
@@ -97,12 +97,12 @@ fn choice_ui<T: Copy + PartialEq>(ui: &mut Ui, id: &str, chosen: &mut T, all: &[
 fn run_ui(ui: &mut Ui, session: &Session, view: &ReportView, commands: &mut Vec<Command>) {
     let report = &session.report;
     if let Some((progress, left)) = session.tasks.progress(&TaskKey::Report) {
-        let left = left.map_or(String::new(), |time| format!(", {} left", duration_text(time)));
         match progress.fraction() {
             Some(fraction) => drop(ui.add(ProgressBar::new(fraction).show_percentage())),
             None => drop(ui.spinner()),
         }
-        ui.add(Label::new(RichText::new(format!("{}{left}", progress.message)).weak()).wrap());
+        let text = with_time_left(&progress.message, left);
+        ui.add(Label::new(RichText::new(text).weak()).wrap());
         if ui.add(icon_button(Icon::X, "Cancel")).clicked() {
             commands.push(Command::Report(ReportCommand::Cancel));
         }
