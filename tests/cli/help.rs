@@ -147,6 +147,38 @@ fn the_help_has_the_usual_number_of_ghosts() {
     assert!(words.join(" ").contains(&usual), "{help}");
 }
 
+/// The words of options follow from the values: a value that is renamed would change what users type.
+#[test]
+fn options_take_the_words_of_a_question_with_hyphens() {
+    let drive = "simulate --speed 15 --engine-braking 0.5";
+    let force = "evaluate force --model shipped --data datasets/fea";
+    let staged = "evaluate reconstruction datasets/staged";
+    let methods =
+        "momentum-in-line momentum crush-energy spin-out yaw-mark skid airborne time-distance";
+    for (command, pointer, words) in [
+        (format!("{staged} --known"), "/known/0", "everything without-edr rest-only"),
+        (format!("{staged} --cases"), "/split", "all tuning reported"),
+        ("evaluate pairs datasets/pairs --cases".to_owned(), "/split", "all fitted reported"),
+        (format!("{force} --bad-cases"), "/bad_cases", "refuse leave-out"),
+        (format!("{force} --split"), "/split", "test all"),
+        (format!("{drive} --integrator"), "/integrator", "rk4 euler"),
+        (format!("{drive} --equations"), "/equations", "corrected paper"),
+        (format!("{drive} --driven"), "/ending/engine/axle", "front rear all"),
+        ("hand".to_owned(), "/method", methods),
+    ] {
+        for typed in words.split(' ') {
+            let asked = program()
+                .args(command.split(' '))
+                .args([typed, "--print-request"])
+                .output()
+                .unwrap();
+            let asked = json(&ok(asked));
+            let word = asked.pointer(pointer).and_then(Value::as_str).unwrap_or_default();
+            assert_eq!(word.to_lowercase(), typed.replace('-', "_"), "{command} {typed}: {asked}");
+        }
+    }
+}
+
 #[test]
 fn a_case_file_has_the_keys_of_its_schema() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/examples/pit.impactlab");

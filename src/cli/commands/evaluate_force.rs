@@ -7,7 +7,7 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_evaluation;
-use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, Words, count, one_of};
+use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, Words, count, one_of, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::FOLDS;
 use impactlab_core::units::UnitSystem;
@@ -35,7 +35,7 @@ pub(in crate::cli) struct EvaluateForceArgs {
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
     /// Which of its cases
-    #[arg(long, value_parser = one_of(SPLITS), default_value = "test")]
+    #[arg(long, value_parser = one_value_of(SPLITS), default_value = "test")]
     split: EvaluatedCases,
     /// What is known of each scenario
     #[arg(long, value_parser = one_of(COLUMNS), default_value = "full")]

@@ -6,21 +6,20 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{UnitsArg, Words, count, one_of};
+use crate::cli::options::{UnitsArg, Values, count, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::DRAWS;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluatePairsRequest, PairSplit};
 
 /// Which cases of the folder.
-const CASES: Words<PairSplit> = &[
-    ("all", "All of them", PairSplit::All),
+const CASES: Values<PairSplit> = &[
+    (PairSplit::All, "All of them"),
     (
-        "fitted",
-        "The first half in the order of the SHA-256 of their names, which the contact law was fitted to",
         PairSplit::Fitted,
+        "The first half in the order of the SHA-256 of their names, which the contact law was fitted to",
     ),
-    ("reported", "The other half", PairSplit::Reported),
+    (PairSplit::Reported, "The other half"),
 ];
 
 #[derive(Debug, Args)]
@@ -30,7 +29,7 @@ pub(in crate::cli) struct EvaluatePairsArgs {
     #[arg(value_name = "DIR")]
     data: PathBuf,
     /// Which of the cases
-    #[arg(long, value_parser = one_of(CASES), default_value = "all")]
+    #[arg(long, value_parser = one_value_of(CASES), default_value = "all")]
     cases: PairSplit,
     /// Only those of them that have these names
     #[arg(long, num_args = 1.., value_name = "NAME")]

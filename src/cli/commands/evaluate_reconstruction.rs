@@ -7,24 +7,24 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
-use crate::cli::options::{OverwriteArg, UnitsArg, Words, count, one_of};
+use crate::cli::options::{OverwriteArg, UnitsArg, Values, count, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
 use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
 
 /// How much of the evidence is used.
-const KNOWN: Words<KnownEvidence> = &[
-    ("everything", "All of it", KnownEvidence::Everything),
-    ("without-edr", "All but the event data recorder", KnownEvidence::WithoutEdr),
-    ("rest-only", "The rest poses, with damage, masses and friction", KnownEvidence::RestOnly),
+const KNOWN: Values<KnownEvidence> = &[
+    (KnownEvidence::Everything, "All of it"),
+    (KnownEvidence::WithoutEdr, "All but the event data recorder"),
+    (KnownEvidence::RestOnly, "The rest poses, with damage, masses and friction"),
 ];
 
 /// Which cases of the folder.
-const CASES: Words<StagedSplit> = &[
-    ("all", "All of them", StagedSplit::All),
-    ("tuning", "The first half in the order of the SHA-256 of their names", StagedSplit::Tuning),
-    ("reported", "The other half", StagedSplit::Reported),
+const CASES: Values<StagedSplit> = &[
+    (StagedSplit::All, "All of them"),
+    (StagedSplit::Tuning, "The first half in the order of the SHA-256 of their names"),
+    (StagedSplit::Reported, "The other half"),
 ];
 
 #[derive(Debug, Args)]
@@ -34,10 +34,10 @@ pub(in crate::cli) struct EvaluateReconstructionArgs {
     #[arg(value_name = "DIR")]
     data: PathBuf,
     /// How much of the evidence is used; may be given several times; all three without
-    #[arg(long, value_parser = one_of(KNOWN), value_name = "WHAT")]
+    #[arg(long, value_parser = one_value_of(KNOWN), value_name = "WHAT")]
     known: Vec<KnownEvidence>,
     /// Which of the cases
-    #[arg(long, value_parser = one_of(CASES), default_value = "all")]
+    #[arg(long, value_parser = one_value_of(CASES), default_value = "all")]
     cases: StagedSplit,
     /// Only those of them that have these names
     #[arg(long, num_args = 1.., value_name = "NAME")]

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::commands::compare::print_comparison;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, VehicleArg, one_of};
+use crate::cli::options::{BadCasesArg, OverwriteArg, SPLITS, VehicleArg, one_value_of};
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluateResponseRequest, EvaluatedCases};
 
@@ -21,7 +21,7 @@ pub(in crate::cli) struct EvaluateResponseArgs {
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
     /// Which of its cases
-    #[arg(long, value_parser = one_of(SPLITS), default_value = "test")]
+    #[arg(long, value_parser = one_value_of(SPLITS), default_value = "test")]
     split: EvaluatedCases,
     /// The struck vehicle: a preset or a file, instead of the data set's own
     #[arg(long, value_name = "NAME|FILE")]

@@ -4,7 +4,7 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{UnitsArg, Words, count, number, one_of};
+use crate::cli::options::{UnitsArg, Values, count, number, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::{HAND_COORDINATE, HAND_DRAWS};
 use impactlab_core::units::TypedError;
@@ -17,7 +17,7 @@ use impactlab_study::{DEFAULT_HAND_DRAWS, HandRequest};
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct HandArgs {
     /// The method
-    #[arg(value_name = "METHOD", value_parser = one_of(METHODS))]
+    #[arg(value_name = "METHOD", value_parser = one_value_of(METHODS))]
     method: HandMethod,
     /// Inputs with their standard deviations, such as `friction=0.7±0.05`; without ± the program's
     #[arg(value_name = "INPUT=VALUE±SIGMA", value_parser = named)]
@@ -48,15 +48,15 @@ it takes. `±0` says that a number is exact.
 
 JSON: impactlab schema hand --answer says every key with its unit";
 
-const METHODS: Words<HandMethod> = &[
-    ("momentum-in-line", "two vehicles that meet in one line", HandMethod::MomentumInLine),
-    ("momentum", "two vehicles that meet at an angle: both speeds", HandMethod::Momentum),
-    ("crush-energy", "A, B and C1 to C6: energy, EES and Δv", HandMethod::CrushEnergy),
-    ("spin-out", "a spin to rest with a rolling factor", HandMethod::SpinOut),
-    ("yaw-mark", "critical speed from a curved mark", HandMethod::YawMark),
-    ("skid", "a skid over surfaces, and phases together", HandMethod::Skid),
-    ("airborne", "a flight off an edge or a ramp", HandMethod::Airborne),
-    ("time-distance", "where braking stops, and what it avoids", HandMethod::TimeDistance),
+const METHODS: Values<HandMethod> = &[
+    (HandMethod::MomentumInLine, "two vehicles that meet in one line"),
+    (HandMethod::Momentum, "two vehicles that meet at an angle: both speeds"),
+    (HandMethod::CrushEnergy, "A, B and C1 to C6: energy, EES and Δv"),
+    (HandMethod::SpinOut, "a spin to rest with a rolling factor"),
+    (HandMethod::YawMark, "critical speed from a curved mark"),
+    (HandMethod::Skid, "a skid over surfaces, and phases together"),
+    (HandMethod::Airborne, "a flight off an edge or a ramp"),
+    (HandMethod::TimeDistance, "where braking stops, and what it avoids"),
 ];
 
 /// A name and what stands behind its `=`.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::commands::import_ground::{Ground, GroundArgs, import_ground};
 use crate::cli::console::{Console, Verdict, shown_path};
-use crate::cli::options::{OverwriteArg, SIDES, Words, one_of};
+use crate::cli::options::{OverwriteArg, SIDES, Words, one_of, one_value_of};
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::collision::{ChannelClass, filter_channel};
 use impactlab_core::data::{
@@ -47,10 +47,10 @@ pub(in crate::cli) struct ImportArgs {
     #[arg(long, value_parser = one_of(CARS), default_value = "struck")]
     car: RecorderCar,
     /// To which side the lateral Δv of the recorder is positive
-    #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
+    #[arg(long, value_parser = one_value_of(SIDES), default_value = "right")]
     lateral: RecordedSide,
     /// To which side its yaw rate is positive
-    #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
+    #[arg(long, value_parser = one_value_of(SIDES), default_value = "right")]
     yaw_rate: RecordedSide,
     /// Evidence that the record is added to; a new file has the record alone
     #[arg(long, value_name = "EVIDENCE.toml")]

@@ -14,7 +14,8 @@ use crate::cli::commands::render_replay::{self, ReplayFigureArgs};
 use crate::cli::commands::render_scene::{self, SceneArgs, ShownScene};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
-    OverwriteArg, SourceArgs, UnitsArg, VehicleArg, Words, contact_point, number, one_of, size_px,
+    OverwriteArg, SourceArgs, UnitsArg, Values, VehicleArg, Words, contact_point, number, one_of,
+    one_value_of, size_px,
 };
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::{Channel, write_atomically};
@@ -193,7 +194,7 @@ struct MotionArgs {
     #[command(flatten)]
     source: SourceArgs,
     /// What is shown
-    #[arg(long, value_parser = one_of(CHANNELS))]
+    #[arg(long, value_parser = one_value_of(CHANNELS))]
     channel: Channel,
     #[command(flatten)]
     vehicle: VehicleArgs,
@@ -235,12 +236,8 @@ const CLASSES: Words<ChannelClass> = &[
 ];
 
 /// The channels of the motion.
-const CHANNELS: Words<Channel> = &[
-    ("vx", "", Channel::Vx),
-    ("vy", "", Channel::Vy),
-    ("yaw-rate", "", Channel::YawRate),
-    ("roll", "", Channel::Roll),
-];
+const CHANNELS: Values<Channel> =
+    &[(Channel::Vx, ""), (Channel::Vy, ""), (Channel::YawRate, ""), (Channel::Roll, "")];
 
 /// What acts on the wheels.
 const INPUTS: Words<WheelInput> = &[

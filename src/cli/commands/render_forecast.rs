@@ -7,7 +7,7 @@ use crate::cli::commands::predict_motion::check_window_end;
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::console::Console;
-use crate::cli::options::{SourceArgs, Words, number, one_of, window_s};
+use crate::cli::options::{SourceArgs, Values, number, one_value_of, window_s};
 use impactlab_core::data::Channel;
 use impactlab_core::ranges::INSTANT;
 use impactlab_core::units::UnitSystem;
@@ -24,7 +24,7 @@ pub(in crate::cli) struct ForecastArgs {
     #[command(flatten)]
     source: SourceArgs,
     /// This quantity over time instead of the scene
-    #[arg(long, value_parser = one_of(CHANNELS))]
+    #[arg(long, value_parser = one_value_of(CHANNELS))]
     channel: Option<Channel>,
     /// The moment of outlines and density, s; the end if not given
     #[arg(long, value_parser = number(INSTANT))]
@@ -42,13 +42,13 @@ pub(in crate::cli) struct ForecastArgs {
 }
 
 /// The quantities with bands.
-const CHANNELS: Words<Channel> = &[
-    ("x", "", Channel::X),
-    ("y", "", Channel::Y),
-    ("yaw", "", Channel::Yaw),
-    ("vx", "", Channel::Vx),
-    ("vy", "", Channel::Vy),
-    ("yaw-rate", "", Channel::YawRate),
+const CHANNELS: Values<Channel> = &[
+    (Channel::X, ""),
+    (Channel::Y, ""),
+    (Channel::Yaw, ""),
+    (Channel::Vx, ""),
+    (Channel::Vy, ""),
+    (Channel::YawRate, ""),
 ];
 
 /// The scene or a quantity over time, with what was recorded and what the 4DOF model says.

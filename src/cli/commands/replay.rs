@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
-    AXLES, OverwriteArg, SIDES, UnitsArg, VehicleArg, count, number, one_of,
+    AXLES, OverwriteArg, SIDES, UnitsArg, VehicleArg, count, number, one_value_of,
 };
 use crate::cli::text::{PrintedAnswer, print_answer};
 use impactlab_core::data::{RecordedSide, write_restricted_series_csv};
@@ -52,7 +52,7 @@ pub(in crate::cli) struct RecordArgs {
     #[arg(long, value_name = "V.toml|PRESET")]
     vehicle: Option<VehicleArg>,
     /// The axle that is driven
-    #[arg(long, value_parser = one_of(AXLES), default_value = "front")]
+    #[arg(long, value_parser = one_value_of(AXLES), default_value = "front")]
     driven: DrivenAxle,
     /// Angle of the steering wheel over that of the road wheels; 16 ± 2 if not given
     #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO),
@@ -65,10 +65,10 @@ pub(in crate::cli) struct RecordArgs {
     #[arg(long, value_name = "SHARE", value_parser = number(RECORDED_SPEED_SIGMA))]
     speed_sigma: Option<f64>,
     /// To which side the recorded steering wheel is positive
-    #[arg(long, value_parser = one_of(SIDES), default_value = "left")]
+    #[arg(long, value_parser = one_value_of(SIDES), default_value = "left")]
     steering: RecordedSide,
     /// To which side the recorded yaw rate is positive; in controls.csv of `import` it is left
-    #[arg(long, value_parser = one_of(SIDES), default_value = "right")]
+    #[arg(long, value_parser = one_value_of(SIDES), default_value = "right")]
     yaw_rate: RecordedSide,
     /// Peak friction of the road instead of the vehicle's
     #[arg(long, value_parser = number(ROAD_FRICTION))]

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
-use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Words, count, one_of};
+use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Values, count, one_value_of};
 use impactlab_core::data::write_bytes;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_document::report::{
@@ -44,13 +44,13 @@ pub(in crate::cli) struct ReportArgs {
     #[arg(long, value_name = "NAME")]
     variant: Vec<String>,
     /// Language
-    #[arg(long, value_parser = one_of(LANGUAGES), default_value = "en")]
+    #[arg(long, value_parser = one_value_of(LANGUAGES), default_value = "en")]
     language: Language,
     /// Units of the numbers
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
     /// Size of the pages; letter with US units and A4 with others if not given
-    #[arg(long, value_parser = one_of(PAPERS))]
+    #[arg(long, value_parser = one_value_of(PAPERS))]
     paper: Option<Paper>,
     /// The date that the report bears; today in UTC if not given
     #[arg(long, value_name = "YYYY-MM-DD")]
@@ -71,11 +71,9 @@ JSON: out, title, date, sections, pictures, unanswered, changes [{kind, path | n
 Exit code 1 if a question has no answer, or if the case, a file or a network is not what it was when the
 case was saved. The report is written then too, and says so.";
 
-const LANGUAGES: Words<Language> =
-    &[("en", "English", Language::En), ("de", "German", Language::De)];
+const LANGUAGES: Values<Language> = &[(Language::En, "English"), (Language::De, "German")];
 
-const PAPERS: Words<Paper> =
-    &[("a4", "210 mm × 297 mm", Paper::A4), ("letter", "8.5 in × 11 in", Paper::Letter)];
+const PAPERS: Values<Paper> = &[(Paper::A4, "210 mm × 297 mm"), (Paper::Letter, "8.5 in × 11 in")];
 
 /// What was written.
 #[derive(Debug, Serialize)]

@@ -10,7 +10,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
     EQUATIONS, EndingArgs, INTEGRATORS, OverwriteArg, SAMPLINGS, UnitsArg, VehicleArg,
-    contact_point, count, number, one_of,
+    contact_point, count, number, one_value_of,
 };
 use crate::cli::text::{PrintedAnswer, print_answer};
 use impactlab_core::data::write::check_ending;
@@ -61,10 +61,10 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(id = "bullet", long = "bullet", value_name = "V.toml|PRESET")]
     striking: Option<VehicleArg>,
     /// How the equations of motion are integrated
-    #[arg(long, value_parser = one_of(INTEGRATORS), default_value = "rk4")]
+    #[arg(long, value_parser = one_value_of(INTEGRATORS), default_value = "rk4")]
     integrator: Integrator,
     /// Which equations of motion
-    #[arg(long, value_parser = one_of(EQUATIONS))]
+    #[arg(long, value_parser = one_value_of(EQUATIONS))]
     equations: Option<Equations>,
     /// Write the trajectory as CSV, 100 Hz (with --dataset: every trajectory, into this folder)
     #[arg(long, value_name = "PATH")]
@@ -167,7 +167,7 @@ struct SingleArgs {
     #[arg(long, requires = "mapped")]
     map: Option<ColumnMap>,
     /// What a force sample stands for; without it, as the columns suggest
-    #[arg(long, value_parser = one_of(SAMPLINGS), requires = "force")]
+    #[arg(long, value_parser = one_value_of(SAMPLINGS), requires = "force")]
     sampling: Option<Sampling>,
     /// Where the force acts: x, y from the CG in body axes (x forward, y left), z above the
     /// ground, m. The yaw moment follows from it; without it, the file's own mz at CG height, or, if

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{Words, number, one_of};
+use crate::cli::options::{Values, number, one_value_of};
 use impactlab_core::collision::contact::{BarrierTest, FaceStiffness};
 use impactlab_core::error_chain;
 use impactlab_core::ranges::{BODY_WIDTH, CRUSH_DEPTH, SPEED, VEHICLE_MASS};
@@ -34,7 +34,7 @@ pub(in crate::cli) struct StiffnessArgs {
     #[arg(long, value_name = "SPEED", default_value = "5mph", value_parser = number(SPEED))]
     no_damage_speed: f64,
     /// The face
-    #[arg(long, value_parser = one_of(FACES), default_value = "front")]
+    #[arg(long, value_parser = one_value_of(FACES), default_value = "front")]
     face: CrushFace,
 }
 
@@ -48,11 +48,8 @@ A = m b0 b1/L and B = m b1²/L with b1 = (V − b0)/C and C = (C1/2 + C2 + … +
 
 JSON: {face, mean_crush_m, onset_n_per_m, stiffness_n_per_m2}";
 
-const FACES: Words<CrushFace> = &[
-    (CrushFace::Front.word(), "", CrushFace::Front),
-    (CrushFace::Side.word(), "", CrushFace::Side),
-    (CrushFace::Rear.word(), "", CrushFace::Rear),
-];
+const FACES: Values<CrushFace> =
+    &[(CrushFace::Front, ""), (CrushFace::Side, ""), (CrushFace::Rear, "")];
 
 /// Six depths, each with or without a unit.
 fn crush(text: &str) -> Result<[f64; 6], String> {

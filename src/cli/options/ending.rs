@@ -5,7 +5,7 @@ use std::str::FromStr;
 use clap::{ArgGroup, Args};
 
 use crate::cli::CliError;
-use crate::cli::options::choices::{AXLES, Words, one_of};
+use crate::cli::options::choices::{AXLES, Words, one_of, one_value_of};
 use crate::cli::options::quantity::{QuantityError, number};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, REACTION_TIME,
@@ -60,7 +60,7 @@ pub(in crate::cli) struct EndingArgs {
         requires = "drive_torque")]
     drive_start: f64,
     /// The driven axle
-    #[arg(long, value_parser = one_of(AXLES), default_value = "front", requires = "engine")]
+    #[arg(long, value_parser = one_value_of(AXLES), default_value = "front", requires = "engine")]
     driven: DrivenAxle,
     /// A wheel that cannot turn from the first contact on; may be given several times
     #[arg(long, value_parser = one_of(WHEELS), value_name = "WHEEL")]

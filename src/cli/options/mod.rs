@@ -13,8 +13,8 @@ mod trust;
 
 pub(super) use camera_key::{CameraKeyArg, camera_key};
 pub(super) use choices::{
-    AXLES, BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SIDES, SPLITS, UnitsArg, VehicleArg,
-    Words, one_of,
+    AXLES, BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SIDES, SPLITS, UnitsArg, Values,
+    VehicleArg, Words, one_of, one_value_of,
 };
 pub(super) use ending::EndingArgs;
 pub(super) use evidence::EvidenceArgs;
