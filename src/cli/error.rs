@@ -110,7 +110,7 @@ pub enum CliError {
     #[error("--locked and --dragged: {name} is given twice; give what holds it once")]
     WheelTwice {
         /// The wheel.
-        name: &'static str,
+        name: String,
     },
     /// A ground is given for a data set.
     #[error(

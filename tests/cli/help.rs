@@ -164,6 +164,11 @@ fn options_take_the_words_of_a_question_with_hyphens() {
         (format!("{drive} --integrator"), "/integrator", "rk4 euler"),
         (format!("{drive} --equations"), "/equations", "corrected paper"),
         (format!("{drive} --driven"), "/ending/engine/axle", "front rear all"),
+        (
+            "simulate --speed 15 --locked".to_owned(),
+            "/ending/damage/0/wheel",
+            "front-left front-right rear-left rear-right",
+        ),
         ("hand".to_owned(), "/method", methods),
     ] {
         for typed in words.split(' ') {

@@ -9,9 +9,9 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::commands::import_ground::{Ground, GroundArgs, import_ground};
 use crate::cli::console::{Console, Verdict, shown_path};
-use crate::cli::options::{OverwriteArg, SIDES, Words, one_of, one_value_of};
+use crate::cli::options::{OverwriteArg, SIDES, Values, one_value_of};
 use impactlab_core::collision::contact::BarrierTest;
-use impactlab_core::collision::{ChannelClass, filter_channel};
+use impactlab_core::collision::{ChannelClass, Role, filter_channel};
 use impactlab_core::data::{
     ColumnMap, CrashTest, Existing, RecordedControls, RecordedSide, RecorderRecord, Severity,
     check_file, parts_beside, read_any_series, write_bytes, write_restricted_series_csv,
@@ -44,8 +44,8 @@ pub(in crate::cli) struct ImportArgs {
     #[arg(long, value_name = "N")]
     event: Option<usize>,
     /// In which car the recorder was
-    #[arg(long, value_parser = one_of(CARS), default_value = "struck")]
-    car: RecorderCar,
+    #[arg(long, value_parser = one_value_of(CARS), default_value = "struck")]
+    car: Role,
     /// To which side the lateral Δv of the recorder is positive
     #[arg(long, value_parser = one_value_of(SIDES), default_value = "right")]
     lateral: RecordedSide,
@@ -79,15 +79,8 @@ point cloud. Anything else gives series.csv in SI units.
 
 JSON: {kind, files, notes}";
 
-/// The car of a recorder.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum RecorderCar {
-    Struck,
-    Striking,
-}
-
-const CARS: Words<RecorderCar> =
-    &[("struck", "", RecorderCar::Struck), ("striking", "", RecorderCar::Striking)];
+/// The cars in which a recorder may have been.
+const CARS: Values<Role> = &[(Role::Struck, ""), (Role::Striking, "")];
 
 /// What was written, and what is to be said of it.
 #[derive(Debug, Serialize)]
@@ -158,8 +151,8 @@ fn import_recorder(args: &ImportArgs, staging: &Path) -> Result<Imported, CliErr
     }
     let edr = Edr::from_record(&record);
     let before = match args.car {
-        RecorderCar::Struck => evidence.edr.replace(edr),
-        RecorderCar::Striking => evidence.striking_edr.replace(edr),
+        Role::Struck => evidence.edr.replace(edr),
+        Role::Striking => evidence.striking_edr.replace(edr),
     };
     let text = evidence.to_toml();
     write_bytes(&staging.join("evidence.toml"), Existing::Refuse, text.as_bytes())?;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use clap::{ArgGroup, Args};
 
 use crate::cli::CliError;
-use crate::cli::options::choices::{AXLES, Words, one_of, one_value_of};
+use crate::cli::options::choices::{AXLES, Values, one_value_of, typed_word};
 use crate::cli::options::quantity::{QuantityError, number};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, REACTION_TIME,
@@ -63,7 +63,7 @@ pub(in crate::cli) struct EndingArgs {
     #[arg(long, value_parser = one_value_of(AXLES), default_value = "front", requires = "engine")]
     driven: DrivenAxle,
     /// A wheel that cannot turn from the first contact on; may be given several times
-    #[arg(long, value_parser = one_of(WHEELS), value_name = "WHEEL")]
+    #[arg(long, value_parser = one_value_of(WHEELS), value_name = "WHEEL")]
     locked: Vec<Wheel>,
     /// A wheel that bent bodywork drags with this share of what the road can hold, such as
     /// rear-left=0.5; may be given several times
@@ -91,11 +91,11 @@ pub(in crate::cli) struct EndingArgs {
     steer_rise: f64,
 }
 
-const WHEELS: Words<Wheel> = &[
-    ("front-left", "", Wheel::FrontLeft),
-    ("front-right", "", Wheel::FrontRight),
-    ("rear-left", "", Wheel::RearLeft),
-    ("rear-right", "", Wheel::RearRight),
+const WHEELS: Values<Wheel> = &[
+    (Wheel::FrontLeft, ""),
+    (Wheel::FrontRight, ""),
+    (Wheel::RearLeft, ""),
+    (Wheel::RearRight, ""),
 ];
 
 /// A wheel and its drag.
@@ -122,8 +122,8 @@ impl FromStr for DraggedArg {
 
     fn from_str(text: &str) -> Result<Self, DraggedError> {
         let (wheel, share) = text.split_once('=').ok_or(DraggedError::Form)?;
-        let is_it = |(word, ..): &&(&str, _, _)| word.eq_ignore_ascii_case(wheel.trim());
-        let (.., wheel) = *WHEELS.iter().find(is_it).ok_or(DraggedError::Form)?;
+        let is_it = |of: &Wheel| typed_word(of).eq_ignore_ascii_case(wheel.trim());
+        let wheel = Wheel::ALL.into_iter().find(is_it).ok_or(DraggedError::Form)?;
         Ok(Self { wheel, share: number(DRAG_SHARE)(share)? })
     }
 }
@@ -150,9 +150,7 @@ impl EndingArgs {
         if let Some((_, twice)) =
             damage.iter().enumerate().find(|(idx, it)| is_twice(*idx, it.wheel))
         {
-            let word = WHEELS.iter().find(|(.., wheel)| *wheel == twice.wheel);
-            let name = word.map_or("a wheel", |(word, ..)| *word);
-            return Err(CliError::WheelTwice { name });
+            return Err(CliError::WheelTwice { name: typed_word(&twice.wheel) });
         }
         let ending = Ending {
             brake: self.brake.map(|share_of_friction| {
