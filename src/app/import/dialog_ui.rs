@@ -11,7 +11,7 @@ use crate::app::import::dialog::ImportDialog;
 use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
-use crate::app::widgets::{notice_ui, working_ui};
+use crate::app::widgets::{choice_row, notice_ui, working_ui};
 use impactlab_core::data::{
     Channel, ColumnMap, DeckUnits, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef,
     Table, VelocityAxes, VelocityFit,
@@ -245,17 +245,9 @@ impl ImportDialog {
                 self.zero_ui(ui);
             });
             ui.end_row();
-            let name = ui.label("y points to the");
-            let text = |right| if right { "right (SAE J670)" } else { "left (ISO 8855)" };
-            let combo = ComboBox::from_id_salt("y axis");
+            let text = |right: bool| if right { "right (SAE J670)" } else { "left (ISO 8855)" };
             let is_right = &mut self.settings.y_to_right;
-            let shown = combo.selected_text(text(*is_right)).show_ui(ui, |ui| {
-                for right in [false, true] {
-                    ui.selectable_value(is_right, right, text(right));
-                }
-            });
-            shown.response.labelled_by(name.id);
-            ui.end_row();
+            choice_row(ui, "y points to the", is_right, &[false, true], text);
             self.headings_ui(ui);
             self.velocities_ui(ui);
             self.antenna_ui(ui);
@@ -301,20 +293,12 @@ impl ImportDialog {
         if !self.choices.has(Channel::Yaw) {
             return;
         }
-        let name = ui.label("Headings are");
-        let text = |is_compass| match is_compass {
+        let text = |is_compass: bool| match is_compass {
             false => "yaw angles, from x to the left",
             true => "compass headings, from north to the right",
         };
         let is_compass = &mut self.settings.compass_headings;
-        let combo = ComboBox::from_id_salt("headings").selected_text(text(*is_compass));
-        let shown = combo.show_ui(ui, |ui| {
-            for compass in [false, true] {
-                ui.selectable_value(is_compass, compass, text(compass));
-            }
-        });
-        shown.response.labelled_by(name.id);
-        ui.end_row();
+        choice_row(ui, "Headings are", is_compass, &[false, true], text);
     }
 
     fn velocities_ui(&mut self, ui: &mut Ui) {

@@ -1,10 +1,10 @@
 //! The form that asks how a point cloud becomes a site.
 
-use egui::{ComboBox, Grid, TextEdit, Ui};
+use egui::{Grid, TextEdit, Ui};
 
 use crate::app::command::Command;
 use crate::app::ground::{CloudForm, GroundCommand};
-use crate::app::widgets::{quantity_field, run_progress_ui};
+use crate::app::widgets::{choice_row, quantity_field, run_progress_ui};
 use impactlab_core::jobs::Progress;
 use impactlab_core::ranges::PIXEL_SIZE;
 use impactlab_core::site::LengthUnit;
@@ -34,15 +34,7 @@ pub fn cloud_ui(
     Grid::new("cloud").num_columns(2).show(ui, |ui| {
         quantity_field(ui, "Pixel", &mut form.pixel_m, &PIXEL_SIZE, units);
         if let Some(unit) = &mut form.unit {
-            let name = ui.label("Unit of its coordinates");
-            let list = ComboBox::from_id_salt("unit of a point cloud").selected_text(unit.word());
-            let list = list.show_ui(ui, |ui| {
-                for offered in UNITS {
-                    ui.selectable_value(unit, offered, offered.word());
-                }
-            });
-            list.response.labelled_by(name.id);
-            ui.end_row();
+            choice_row(ui, "Unit of its coordinates", unit, &UNITS, LengthUnit::word);
         }
         let name = ui.label("New folder");
         let field = TextEdit::singleline(&mut form.folder).desired_width(420.0);

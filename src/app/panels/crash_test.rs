@@ -1,10 +1,10 @@
 //! The form that asks what of a crash test a vehicle gets.
 
-use egui::{Button, ComboBox, Grid, Ui};
+use egui::{Button, Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::crash_test::{CrashTestCommand, CrashTestForm};
-use crate::app::widgets::notice_ui;
+use crate::app::widgets::{choice_row, notice_ui};
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -28,15 +28,7 @@ pub fn crash_test_ui(
             ui.label(value);
             ui.end_row();
         }
-        let name = ui.label("It is the");
-        let list = ComboBox::from_id_salt("vehicle of a test").selected_text(form.role.label());
-        let list = list.show_ui(ui, |ui| {
-            for role in Role::ALL {
-                ui.selectable_value(&mut form.role, role, role.label());
-            }
-        });
-        list.response.labelled_by(name.id);
-        ui.end_row();
+        choice_row(ui, "It is the", &mut form.role, &Role::ALL, Role::label);
     });
     let is_editable = form.editable.contains(&form.role);
     for doubt in &form.doubts {

@@ -1,9 +1,11 @@
 //! The form that says what happens to the wheels of the struck vehicle after the first contact.
 
-use egui::{CollapsingHeader, ComboBox, Grid, Ui};
+use egui::{CollapsingHeader, Grid, Ui};
 use strum::VariantArray;
 
-use crate::app::widgets::{EmptyField, optional_quantity, quantity_field};
+use crate::app::widgets::{
+    EmptyField, choice_row, optional_quantity, quantity_field, salted_choice_row,
+};
 use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DEAD_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING,
     ESC_THRESHOLD, LARGEST_STEERING_WHEEL_ANGLE, PIT_START, REACTION_TIME, Range, SIDESLIP,
@@ -147,12 +149,12 @@ fn pit_fields(ui: &mut Ui, driver: &mut Option<PitDriver>, units: UnitSystem) {
         let sides: Vec<_> =
             [None].into_iter().chain(TurnSide::ALL.iter().copied().map(Some)).collect();
         let word = |side: Option<TurnSide>| side.map_or("of the other car", TurnSide::word);
-        choice_field(ui, "to the side", &mut driver.side, &sides, word);
+        choice_row(ui, "to the side", &mut driver.side, &sides, word);
     }
     let turn_s = &mut driver.turn_s;
     optional_field(ui, "turned within", turn_s, usual.turn_s, &BRAKE_RISE, units);
     let ends: Vec<_> = [None].into_iter().chain(PitEnd::ALL.iter().copied().map(Some)).collect();
-    choice_field(ui, "in the end", &mut driver.end, &ends, pit_end_label);
+    choice_row(ui, "in the end", &mut driver.end, &ends, pit_end_label);
     if driver.end != Some(PitEnd::KeepPushing) {
         let (label, turn_rad) = ("once the struck car has turned by", &mut driver.struck_turn_rad);
         optional_field(ui, label, turn_rad, usual.struck_turn_rad, &STRUCK_TURN, units);
@@ -189,27 +191,6 @@ fn optional_field(
     ui.end_row();
 }
 
-/// Draws a row for a choice.
-fn choice_field<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    label: &str,
-    value: &mut T,
-    options: &[T],
-    word: impl Fn(T) -> &'static str,
-) {
-    let name = ui.label(label);
-    ComboBox::from_id_salt(label)
-        .selected_text(word(*value))
-        .show_ui(ui, |ui| {
-            for &option in options {
-                ui.selectable_value(value, option, word(option));
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
-}
-
 fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSystem) {
     let usual =
         EngineBraking { deceleration_m_s2: USUAL_ENGINE_BRAKING_M_S2, axle: DrivenAxle::default() };
@@ -235,7 +216,7 @@ fn drive_fields(ui: &mut Ui, drive: &mut Option<Driving>, units: UnitSystem) {
 }
 
 fn axle_field(ui: &mut Ui, label: &str, axle: &mut DrivenAxle) {
-    choice_field(ui, label, axle, DrivenAxle::ALL, DrivenAxle::word);
+    choice_row(ui, label, axle, DrivenAxle::ALL, DrivenAxle::word);
 }
 
 /// How a wheel is after the impact.
@@ -265,17 +246,9 @@ impl Condition {
 fn wheel_fields(ui: &mut Ui, wheel: Wheel, damage: &mut Vec<DamagedWheel>, units: UnitSystem) {
     let before = Condition::from_damage(damage.iter().find(|damaged| damaged.wheel == wheel));
     let mut condition = before;
-    let name = ui.label(format!("Wheel, {}", wheel.label()));
-    ComboBox::from_id_salt(wheel.label())
-        .selected_text(condition.label())
-        .show_ui(ui, |ui| {
-            for &option in Condition::VARIANTS {
-                ui.selectable_value(&mut condition, option, option.label());
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
+    let label = format!("Wheel, {}", wheel.label());
+    let options = Condition::VARIANTS;
+    salted_choice_row(ui, wheel.label(), &label, &mut condition, options, Condition::label);
     if condition != before {
         damage.retain(|damaged| damaged.wheel != wheel);
         let drag_share_of_friction = (condition == Condition::Dragged).then_some(USUAL_DRAG);

@@ -5,7 +5,7 @@ use egui::{Button, ComboBox, Grid, Ui};
 use crate::app::command::Command;
 use crate::app::panels::replay::REPLAY;
 use crate::app::recorder::{RecorderCommand, RecorderForm, title};
-use crate::app::widgets::notice_ui;
+use crate::app::widgets::{choice_row, notice_ui};
 use impactlab_core::collision::Role;
 use impactlab_core::data::{RecordedDeltaV, RecordedSpeed, RecorderRecord, Severity};
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -78,25 +78,10 @@ fn choices_ui(ui: &mut Ui, form: &mut RecorderForm) {
     });
     list.response.labelled_by(name.id);
     ui.end_row();
-    let name = ui.label("It was in the");
-    let list = ComboBox::from_id_salt("car of a recorder").selected_text(form.car.label());
-    let list = list.show_ui(ui, |ui| {
-        for role in Role::ALL {
-            ui.selectable_value(&mut form.car, role, role.label());
-        }
-    });
-    list.response.labelled_by(name.id);
-    ui.end_row();
-    let name = ui.label("Lateral Δv is positive to the");
+    choice_row(ui, "It was in the", &mut form.car, &Role::ALL, Role::label);
     let side = |is_left: bool| if is_left { "left" } else { "right (SAE J1698)" };
-    let list = ComboBox::from_id_salt("side of a recorder");
-    let list = list.selected_text(side(form.is_lateral_to_left)).show_ui(ui, |ui| {
-        for is_left in [false, true] {
-            ui.selectable_value(&mut form.is_lateral_to_left, is_left, side(is_left));
-        }
-    });
-    list.response.labelled_by(name.id);
-    ui.end_row();
+    let is_left = &mut form.is_lateral_to_left;
+    choice_row(ui, "Lateral Δv is positive to the", is_left, &[false, true], side);
 }
 
 /// What was recorded, by its names.

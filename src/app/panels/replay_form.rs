@@ -1,10 +1,10 @@
 //! The settings of the replay of a recorder.
 
-use egui::{ComboBox, Grid, Ui};
+use egui::{Grid, Ui};
 
 use crate::app::widgets::{
-    EmptyField, VehiclePicker, count_field, optional_count, optional_quantity, quantity_field,
-    seed_field, vehicle_name,
+    EmptyField, VehiclePicker, choice_row, count_field, optional_count, optional_quantity,
+    quantity_field, seed_field, vehicle_name,
 };
 use impactlab_core::collision::Role;
 use impactlab_core::ranges::{
@@ -51,20 +51,16 @@ pub(super) fn settings_ui(
         picker.show(ui, &mut request.vehicle);
         ui.end_row();
         of_pane_ui(ui, &mut request.vehicle, of_pane);
-        let axles = [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All];
-        choice_ui(ui, "Driven axle", &mut request.driven_axle, &axles, |axle| match axle {
-            DrivenAxle::Front => "front",
-            DrivenAxle::Rear => "rear",
-            DrivenAxle::All => "all",
-        });
+        let axle = &mut request.driven_axle;
+        choice_row(ui, "Driven axle", axle, DrivenAxle::ALL, DrivenAxle::word);
         numbers_ui(ui, request, units);
         let side = |is_left: bool| if is_left { "left" } else { "right" };
         let right = &mut request.steering_right;
-        choice_ui(ui, "Steering wheel is positive to the", right, &[false, true], |is_right| {
+        choice_row(ui, "Steering wheel is positive to the", right, &[false, true], |is_right| {
             side(!is_right)
         });
         let left = &mut request.yaw_rate_left;
-        choice_ui(ui, "Yaw rate is positive to the", left, &[false, true], side);
+        choice_row(ui, "Yaw rate is positive to the", left, &[false, true], side);
         let contact = &mut request.contact;
         quantity_field(ui, "X at the first contact", &mut contact.x_m, &POSITION, units);
         quantity_field(ui, "Y at the first contact", &mut contact.y_m, &POSITION, units);
@@ -154,23 +150,4 @@ fn numbers_ui(ui: &mut Ui, request: &mut ReplayRequest, units: UnitSystem) {
         optional_quantity(ui, value, empty, range, units).labelled_by(name.id);
         ui.end_row();
     }
-}
-
-/// Draws a row with the choice of one of several values.
-fn choice_ui<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    label: &str,
-    chosen: &mut T,
-    values: &[T],
-    text: impl Fn(T) -> &'static str,
-) {
-    let name = ui.label(label);
-    let list = ComboBox::from_id_salt(("replay", label)).selected_text(text(*chosen));
-    let list = list.show_ui(ui, |ui| {
-        for value in values {
-            ui.selectable_value(chosen, *value, text(*value));
-        }
-    });
-    list.response.labelled_by(name.id);
-    ui.end_row();
 }

@@ -1,6 +1,6 @@
 //! The “Scenario” pane: the form of a collision of two vehicles, with its momentum solution.
 
-use egui::{ComboBox, Grid, ScrollArea, Ui};
+use egui::{Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -13,8 +13,8 @@ use crate::app::project::{Beside, Project};
 use crate::app::state::{Session, Subject};
 use crate::app::vehicles::{ChosenVehicles, vehicle_title};
 use crate::app::widgets::{
-    EmptyField, caveats_ui, facts_ui, optional_quantity, problem_line_ui, quantity_field,
-    quantity_value, within_view,
+    EmptyField, caveats_ui, choice_row, facts_ui, optional_quantity, problem_line_ui,
+    quantity_field, quantity_value, within_view,
 };
 use impactlab_core::collision::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, PulseShape, RestitutionForm, Role, Scenario,
@@ -242,17 +242,8 @@ fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
     let by_default = default_restitution_in_words().say(&NumberFormat::english(units));
     let hint = format!("empty: by the speed at which they close, {by_default}");
     stated_field(ui, "Restitution e", &hint, &mut contact.restitution, &RESTITUTION, units);
-    let name = ui.label("Restitution acts");
-    ComboBox::from_id_salt("restitution form")
-        .selected_text(contact.restitution_form.label())
-        .show_ui(ui, |ui| {
-            for form in RestitutionForm::ALL {
-                ui.selectable_value(&mut contact.restitution_form, form, form.label());
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
+    let (form, forms) = (&mut contact.restitution_form, RestitutionForm::ALL);
+    choice_row(ui, "Restitution acts", form, &forms, RestitutionForm::label);
     let mut is_of_critical = contact.friction_of_critical.is_some();
     ui.label("");
     let hint = "The friction limit as a share of the impulse ratio at which the vehicles just stop \
@@ -397,17 +388,8 @@ fn contact_form(
             for (label, value, range) in fields {
                 quantity_field(ui, label, value, &range, units);
             }
-            let name = ui.label("Pulse shape");
-            ComboBox::from_id_salt("pulse shape")
-                .selected_text(pulse.shape.label())
-                .show_ui(ui, |ui| {
-                    for shape in PulseShape::ALL {
-                        ui.selectable_value(&mut pulse.shape, shape, shape.label());
-                    }
-                })
-                .response
-                .labelled_by(name.id);
-            ui.end_row();
+            let (shape, shapes) = (&mut pulse.shape, PulseShape::ALL);
+            choice_row(ui, "Pulse shape", shape, &shapes, PulseShape::label);
         });
     });
 }
@@ -419,17 +401,7 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
     };
     match location {
         ContactLocation::Side { side, offset_m } => {
-            let name = ui.label("Struck side");
-            ComboBox::from_id_salt("side")
-                .selected_text(side.name())
-                .show_ui(ui, |ui| {
-                    for option in Side::ALL {
-                        ui.selectable_value(side, option, option.name());
-                    }
-                })
-                .response
-                .labelled_by(name.id);
-            ui.end_row();
+            choice_row(ui, "Struck side", side, &Side::ALL, Side::name);
             length(ui, "Offset from its middle", offset_m, &CONTACT_OFFSET);
         }
         ContactLocation::Footprints { striking_x_world_m, striking_y_world_m } => {

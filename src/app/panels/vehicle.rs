@@ -1,7 +1,7 @@
 //! The “Vehicle” pane: the struck and the striking vehicle, the settings of the simulation, and the
 //! speed and contact point for files that contain only a force.
 
-use egui::{ComboBox, Grid, ScrollArea, Ui};
+use egui::{Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::panels::file_start::file_start_ui;
@@ -11,7 +11,9 @@ use crate::app::panes::PaneContext;
 use crate::app::project::Project;
 use crate::app::state::Subject;
 use crate::app::vehicles::vehicle_title;
-use crate::app::widgets::{VehiclePicker, facts_ui, quantity_field, value_ui, vehicle_name};
+use crate::app::widgets::{
+    VehiclePicker, choice_row, facts_ui, quantity_field, value_ui, vehicle_name,
+};
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::error_chain;
@@ -34,9 +36,15 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 vehicle_choice_ui(ui, role, project, view.units, commands);
             }
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
-            list_ui(ui, "Equations", &mut project.simulate.equations, &equations, equations_label);
+            choice_row(
+                ui,
+                "Equations",
+                &mut project.simulate.equations,
+                &equations,
+                equations_label,
+            );
             let integrators = Integrator::ALL;
-            list_ui(
+            choice_row(
                 ui,
                 "Integration",
                 &mut project.simulate.integrator,
@@ -201,29 +209,6 @@ fn edited_copy(choice: &VehicleChoice, default: &VehicleParameters) -> Result<Da
     DataSheet::from_parameters(vehicle).ok_or_else(|| {
         format!("no data sheet leads to all parameters of {}: edit its file instead", vehicle.name)
     })
-}
-
-/// Draws a row of a two-column grid: a label and a drop-down list of a few values.
-///
-/// - `options`, `label`: the values, and the function that gives the text of a value.
-fn list_ui<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    title: &str,
-    value: &mut T,
-    options: &[T],
-    label: fn(T) -> &'static str,
-) {
-    let name = ui.label(title);
-    ComboBox::from_id_salt(title)
-        .selected_text(label(*value))
-        .show_ui(ui, |ui| {
-            for &option in options {
-                ui.selectable_value(value, option, label(option));
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
 }
 
 fn equations_label(equations: Option<Equations>) -> &'static str {

@@ -1,12 +1,12 @@
 //! The form of a vehicle: what is known of it, and what is estimated by rule with its scatter.
 
-use egui::{CollapsingHeader, ComboBox, Grid, Response, RichText, Ui};
+use egui::{CollapsingHeader, Grid, Response, RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::output::Output;
 use crate::app::panels::crush_form::crush_form_ui;
-use crate::app::widgets::{problem_line_ui, quantity_value};
+use crate::app::widgets::{problem_line_ui, quantity_value, salted_choice_row};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::{self, NumberFormat, UnitSystem};
 use impactlab_core::vehicle::sheet::{Drive, Estimate};
@@ -62,32 +62,19 @@ fn head_ui(ui: &mut Ui, title: &str, sheet: &mut DataSheet) {
         ui.add(field).labelled_by(name.id);
         ui.end_row();
     }
-    let name = ui.label("Class");
-    let class = ComboBox::from_id_salt((title, "class")).selected_text(sheet.class.word());
-    let class = class.show_ui(ui, |ui| {
-        for class in VehicleClass::ALL {
-            ui.selectable_value(&mut sheet.class, class, class.word());
-        }
-    });
-    class.response.labelled_by(name.id).on_hover_text("Says which rules estimate the rest");
-    ui.end_row();
-    let name = ui.label("Driven axle");
+    let (class, classes) = (&mut sheet.class, VehicleClass::ALL);
+    let class =
+        salted_choice_row(ui, (title, "class"), "Class", class, &classes, VehicleClass::word);
+    class.on_hover_text("Says which rules estimate the rest");
     let choices = [None, Some(Drive::Front), Some(Drive::Rear), Some(Drive::All)];
-    let words = ["not known", "front", "rear", "both"];
-    let word = |drive: Option<Drive>| {
-        let at = choices.iter().position(|choice| *choice == drive);
-        at.map_or("not known", |at| words[at])
+    let word = |drive: Option<Drive>| match drive {
+        None => "not known",
+        Some(Drive::Front) => "front",
+        Some(Drive::Rear) => "rear",
+        Some(Drive::All) => "both",
     };
-    ComboBox::from_id_salt((title, "drive"))
-        .selected_text(word(sheet.drive))
-        .show_ui(ui, |ui| {
-            for choice in choices {
-                ui.selectable_value(&mut sheet.drive, choice, word(choice));
-            }
-        })
-        .response
-        .labelled_by(name.id);
-    ui.end_row();
+    let drive = &mut sheet.drive;
+    salted_choice_row(ui, (title, "drive"), "Driven axle", drive, &choices, word);
 }
 
 /// Draws a row with one quantity: its value if it is known, else its estimate.

@@ -3,6 +3,7 @@
 mod assumptions;
 mod bad_cases;
 mod caveats;
+mod choice;
 mod cost;
 mod dataset_choice;
 mod facts;
@@ -20,6 +21,7 @@ mod written;
 pub use assumptions::{assumptions_ui, evidence_assumptions_ui, replay_assumptions_ui};
 pub use bad_cases::bad_cases_ui;
 pub use caveats::{caveats_ui, restrictions_ui};
+pub use choice::{choice_row, salted_choice_row};
 pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use facts::{facts_text, facts_ui, sentences_ui};
