@@ -20,6 +20,9 @@ impl Role {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Struck, Self::Striking];
 
+    /// Their words in reports, errors and random streams.
+    pub const WORDS: [&'static str; 2] = ["struck", "striking"];
+
     /// What it is called.
     pub const fn label(self) -> &'static str {
         match self {
@@ -157,6 +160,12 @@ impl Scenario {
 mod tests {
     use super::*;
     use crate::vehicle::built_in_vehicle;
+
+    #[test]
+    fn a_role_is_called_by_its_word() {
+        let labels = Role::WORDS.map(|word| format!("{word} vehicle"));
+        assert_eq!(Role::ALL.map(Role::label), labels.each_ref().map(String::as_str));
+    }
 
     fn names(of: &ScenarioVehicle, vehicle: &VehicleParameters) -> Vec<&'static str> {
         let shared = of.beside(vehicle).into_iter().filter(SharedNumber::differs);

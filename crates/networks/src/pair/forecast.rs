@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use crate::pair::scatter::{PairLatents, PairScatter};
 use crate::response::{CoupledDraw, N_RESIDUAL, Predictor};
+use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::{
     ContactBody, ContactConditions, ContactOutline, ContactPhase, CoupledSettings, FaceLaws,
     HandOver, PairError, PairMotion, PairRun, PairVehicle, VehiclePair,
@@ -25,9 +26,6 @@ const SLOW_M_S: f64 = 5.0;
 
 /// Acceleration by the tires from which on a vehicle is taken to turn or slide, m/s².
 const SLIDING_M_S2: f64 = 2.0;
-
-/// Words by which the draws of both vehicles differ.
-const ROLES: [&str; 2] = ["struck", "striking"];
 
 /// Two vehicles of which a forecast is asked; arrays are struck, striking.
 #[derive(Debug, Clone, Copy)]
@@ -236,7 +234,7 @@ impl PairQuestion<'_> {
         };
         let corrections = [0, 1].map(|i| {
             let predictor = own[i].map_or(self.predictors[i], |drawn| drawn.predictor.as_ref());
-            Some(correcting(predictor)?.coupled_draw(settings.seed, ROLES[i], draw))
+            Some(correcting(predictor)?.coupled_draw(settings.seed, Role::WORDS[i], draw))
         });
         self.simulate(&drawn, corrections, steps)
     }

@@ -9,7 +9,7 @@ use crate::{
     ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
 };
 use impactlab_core::collision::{
-    FrictionModel, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle,
+    FrictionModel, RestitutionForm, Role, Scenario, ScenarioContact, ScenarioVehicle,
 };
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
@@ -114,17 +114,17 @@ pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
 ///
 /// - `vehicles`: the struck and the striking one.
 pub(crate) fn drawn_drivers(vehicles: [&StruckVehicle; 2]) -> Vec<Caveat> {
-    let of_vehicle = |(vehicle, role): (&StruckVehicle, &str)| {
+    let of_vehicle = |(vehicle, role): (&StruckVehicle, Role)| {
         let drawn = vehicle.controls.closed_loop.iter().flat_map(ClosedLoop::distributions);
         let note = |drawn: Phrase| {
             let text = Phrase::new("drawn of the {0}, {1}", "Gezogen ({0}): {1}")
-                .with(PhraseValue::Term(format!("{role} vehicle")))
+                .with(PhraseValue::Term(role.label().to_owned()))
                 .with(PhraseValue::phrase(drawn));
             Caveat::new(CaveatKind::Note, text)
         };
         drawn.map(note).collect::<Vec<_>>()
     };
-    vehicles.into_iter().zip(["struck", "striking"]).flat_map(of_vehicle).collect()
+    vehicles.into_iter().zip(Role::ALL).flat_map(of_vehicle).collect()
 }
 
 /// A method of integration that was chosen, where both vehicles are followed through all contacts.
@@ -172,15 +172,15 @@ pub(crate) fn by_force_network(
 ) -> Result<Vec<Caveat>, StudyError> {
     scenario.geometry().map_err(|source| choice.unsolved(source))?;
     let vehicles = [
-        ("struck", &scenario.struck, Preset::Target),
-        ("striking", &scenario.striking, Preset::Bullet2000),
+        (Role::Struck, &scenario.struck, Preset::Target),
+        (Role::Striking, &scenario.striking, Preset::Bullet2000),
     ];
     let mut unused = Vec::new();
-    for (name, vehicle, of_training) in vehicles {
+    for (role, vehicle, of_training) in vehicles {
         if has_other_size(vehicle, &of_training.parameters()) {
             unused.push(Caveat::not_used(
                 Phrase::new("size of the {0}, {1} × {2}", "Größe: {0}, {1} × {2}")
-                    .with(PhraseValue::Term(format!("{name} vehicle")))
+                    .with(PhraseValue::Term(role.label().to_owned()))
                     .with(PhraseValue::given(Quantity::Length, vehicle.length_m))
                     .with(PhraseValue::given(Quantity::Length, vehicle.width_m)),
                 Phrase::new(

@@ -19,9 +19,9 @@
 //! Contact may begin anew at any time. Where the force of the first contact is known, it drives both
 //! vehicles while it lasts (`first_force.rs`).
 
+use crate::collision::Role;
 use crate::collision::contact::first_force::FirstForce;
 use crate::collision::contact::phases::PhaseWatch;
-use crate::collision::contact::vehicle_pair::ROLES;
 use crate::collision::contact::{
     ContactConditions, ContactEnergy, ContactForce, FULL_FRICTION_SPEED_M_S, HandOver, PairContact,
     PairError, PairMotion, PairVehicle, PlanarMotion, USUAL_ELEMENT_M, VehiclePair,
@@ -132,7 +132,7 @@ impl<'a> PairRun<'a> {
         let run = |i: usize| {
             let PairVehicle { vehicle, manoeuvre, .. } = pair.vehicles[i];
             HeldForceRun::new(vehicle, manoeuvre)
-                .map_err(|source| PairError::Vehicle { role: ROLES[i], source })
+                .map_err(|source| PairError::Vehicle { role: Role::WORDS[i], source })
         };
         let bodies = pair.vehicles.map(|vehicle| vehicle.body);
         let ticks = (TICKS_PER_OUTPUT * pair.settings.step_divisor) as f64;
@@ -234,7 +234,7 @@ impl<'a> PairRun<'a> {
             }
         }
         let mut moves = [false; 2];
-        for (i, role) in ROLES.into_iter().enumerate() {
+        for (i, role) in Role::WORDS.into_iter().enumerate() {
             let mean = sums.is_pushed.then(|| self.mean_force(i, &sums));
             self.last_mean[i] = mean;
             moves[i] = self.runs[i]
@@ -431,7 +431,7 @@ impl<'a> PairRun<'a> {
         let Self { runs, contact, phases, output, .. } = self;
         let [struck, striking] = runs;
         let finish = |run: HeldForceRun<'_>, i: usize| {
-            run.finish().map_err(|source| PairError::Vehicle { role: ROLES[i], source })
+            run.finish().map_err(|source| PairError::Vehicle { role: Role::WORDS[i], source })
         };
         let stored_j = contact.stored_energy_j();
         let crush_heat_j = self.normal_work_j - stored_j;

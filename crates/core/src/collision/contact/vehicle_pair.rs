@@ -100,9 +100,6 @@ pub struct PairMotion {
     pub dents_m: [Vec<f64>; 2],
 }
 
-/// Words for the vehicles of a pair.
-pub(super) const ROLES: [&str; 2] = ["struck", "striking"];
-
 impl VehiclePair<'_> {
     pub(super) fn check(&self) -> Result<(), PairError> {
         let is_some = |value: f64| value.is_finite() && value >= 0.0;

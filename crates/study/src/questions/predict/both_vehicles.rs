@@ -13,6 +13,7 @@ use crate::{
     Event, ForceSource, InputKind, Library, MotionSource, Observer, PredictMotionRequest,
     SeriesFile, StudyError, TriedMotion,
 };
+use impactlab_core::collision::Role;
 use impactlab_core::data::{ForceHistory, Outcome};
 use impactlab_core::jobs::Progress;
 use impactlab_core::numerics::random_stream;
@@ -79,11 +80,11 @@ impl<'a> Both<'a> {
     /// What is not used of the network, what is drawn of drivers and systems, and how far the contact law
     /// was scaled.
     fn caveats(&self, forecast: &MotionForecast, response: &ResponseModel) -> Vec<Caveat> {
-        let uncorrected = self.is_corrected(response).into_iter().zip(["struck", "striking"]);
+        let uncorrected = self.is_corrected(response).into_iter().zip(Role::ALL);
         let uncorrected = uncorrected.filter(|(is_corrected, _)| !is_corrected).map(|(_, role)| {
             Caveat::not_used(
                 Phrase::new("response network for the {0}", "Bewegungsnetz, {0}")
-                    .with(PhraseValue::Term(format!("{role} vehicle"))),
+                    .with(PhraseValue::Term(role.label().to_owned())),
                 Phrase::new(
                     "it has learned from vehicles that coast; the equations of motion stand alone",
                     "es hat an rollenden Fahrzeugen gelernt; die Bewegungsgleichungen gelten allein",

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::analysis::Analysis;
+use impactlab_core::collision::Role;
 use impactlab_core::vehicle::{TireMark, TireMarkKind, Wheel, tire_marks};
 
 /// A computed mark of a tire.
@@ -34,8 +35,9 @@ impl TireMarkReport {
         let struck = struck.map(|motion| tire_marks(&motion.series, analysis.controlled()));
         let striking = analysis.striking.as_ref();
         let striking = striking.map(|track| tire_marks(&track.motion, track.controlled()));
-        [("struck", struck), ("striking", striking)]
+        Role::WORDS
             .into_iter()
+            .zip([struck, striking])
             .flat_map(|(vehicle, marks)| {
                 let marks = marks.unwrap_or_default();
                 marks.into_iter().filter_map(move |mark| Self::new(vehicle, &mark))
