@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
+use egui::OutputCommand;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Dialog, Pane, RecorderCommand};
 use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::BarrierTest;
 use impactlab_core::data::{CrashTest, RecorderRecord, Severity};
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_study::{EvidenceChoice, VehicleChoice};
 
 use crate::harness::{apply, open, step_until};
@@ -202,15 +203,25 @@ fn the_stiffness_of_a_crash_test_goes_into_a_vehicle() {
     apply(&mut harness, Command::Open(vec![TEST.into()]));
     step_until(&mut harness, "the test", |state| state.session.dialogs.is_any_open());
     harness.run_steps(4);
+    let test = CrashTest::read(Path::new(TEST)).expect("a test");
+    let found = BarrierTest::from_crash_test(&test).expect("a stiffness").stiffness();
+    let found = found.expect("a stiffness");
+    let onset = Quantity::ForcePerLength.shown(found.onset_n_per_m, UnitSystem::Si);
+    harness.get_by_label(&onset).click();
+    let copied = (0..4).find_map(|_| {
+        harness.step();
+        harness.output().platform_output.commands.iter().find_map(|command| match command {
+            OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        })
+    });
+    assert_eq!(copied, Some(onset), "a click copies a number, as it does of an answer");
     harness.get_by_label("Stiffness into the vehicle").click();
     harness.run_steps(4);
     let state = harness.state().state();
     let VehicleChoice::Sheet(sheet) = &state.project.simulate.striking else {
         panic!("{:?}", state.project.simulate.striking);
     };
-    let test = CrashTest::read(Path::new(TEST)).expect("a test");
-    let found = BarrierTest::from_crash_test(&test).expect("a stiffness").stiffness();
-    let found = found.expect("a stiffness");
     let front = sheet.crush.front.expect("a front");
     assert_eq!(front.onset_n_per_m, found.onset_n_per_m);
     assert_eq!(front.stiffness_n_per_m2, found.stiffness_n_per_m2);

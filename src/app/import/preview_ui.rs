@@ -4,7 +4,7 @@
 use egui::{Button, Grid, Ui};
 
 use crate::app::import::dialog::ImportDialog;
-use crate::app::widgets::notice_ui;
+use crate::app::widgets::{notice_ui, value_row};
 use impactlab_core::data::{Correction, FileKind, Severity};
 use impactlab_draw::{FigureOptions, figure_ui};
 
@@ -55,9 +55,7 @@ impl ImportDialog {
         figure_ui(ui, &preview.figure, &options);
         Grid::new("import numbers").num_columns(2).striped(true).show(ui, |ui| {
             for (name, text) in &preview.numbers {
-                ui.label(*name);
-                ui.strong(text);
-                ui.end_row();
+                value_row(ui, name, text);
             }
         });
         let mut chosen = None;

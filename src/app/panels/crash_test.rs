@@ -4,7 +4,7 @@ use egui::{Button, Grid, Ui};
 
 use crate::app::command::Command;
 use crate::app::crash_test::{CrashTestCommand, CrashTestForm};
-use crate::app::widgets::{choice_row, notice_ui};
+use crate::app::widgets::{choice_row, notice_ui, value_row};
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -24,9 +24,7 @@ pub fn crash_test_ui(
     ui.label(&form.title);
     Grid::new("crash test").num_columns(2).show(ui, |ui| {
         for (name, value) in rows(form, units) {
-            ui.label(name);
-            ui.label(value);
-            ui.end_row();
+            value_row(ui, name, &value);
         }
         choice_row(ui, "It is the", &mut form.role, &Role::ALL, Role::label);
     });

@@ -5,7 +5,7 @@ use egui::{Button, ComboBox, Grid, Ui};
 use crate::app::command::Command;
 use crate::app::panels::replay::REPLAY;
 use crate::app::recorder::{RecorderCommand, RecorderForm, title};
-use crate::app::widgets::{choice_row, notice_ui};
+use crate::app::widgets::{choice_row, notice_ui, value_row};
 use impactlab_core::collision::Role;
 use impactlab_core::data::{RecordedDeltaV, RecordedSpeed, RecorderRecord, Severity};
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -27,9 +27,7 @@ pub fn recorder_ui(
     Grid::new("recorder").num_columns(2).show(ui, |ui| {
         choices_ui(ui, form);
         for (name, value) in recorded(&record, units) {
-            ui.label(name);
-            ui.label(value);
-            ui.end_row();
+            value_row(ui, name, &value);
         }
     });
     for doubt in &record.doubts {
