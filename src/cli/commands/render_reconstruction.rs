@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::CliError;
 use crate::cli::commands::render::OutputArgs;
 use crate::cli::commands::render_figure::{Noted, noted};
-use crate::cli::commands::render_scene::{ShownScene, ViewArg};
+use crate::cli::commands::render_scene::ShownScene;
 use crate::cli::console::Console;
 use crate::cli::options::EvidenceArgs;
 use impactlab_core::units::UnitSystem;
@@ -15,7 +15,7 @@ use impactlab_document::figure::{
     ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
 use impactlab_document::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
-use impactlab_draw::scene::SceneCourse;
+use impactlab_draw::scene::{SceneCourse, ViewKind};
 use impactlab_reconstruct::{Mode, ReconstructedQuantity};
 use impactlab_study::{NamedPath, ReconstructAnswer, ReconstructRequest, ReconstructedPaths};
 
@@ -91,8 +91,8 @@ pub(super) fn figure(
         (None, _) => {
             let paths = ReconstructedPaths::from_answer(answer);
             let view = match args.plot {
-                PlotArg::CarsAbove => Some(ViewArg::Above),
-                PlotArg::CarsPerspective => Some(ViewArg::Perspective),
+                PlotArg::CarsAbove => Some(ViewKind::Above),
+                PlotArg::CarsPerspective => Some(ViewKind::Perspective),
                 _ => None,
             };
             cars = view.map(|view| {

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use impactlab_core::uncertainty::Caveats;
 
 use crate::cli::CliError;
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::noted;
 use crate::cli::console::Console;
-use crate::cli::options::{SourceArgs, count, number};
+use crate::cli::options::{SourceArgs, Values, count, number, one_value_of};
 use impactlab_core::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
 use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{
@@ -19,7 +19,7 @@ use impactlab_document::figure::{
 use impactlab_document::scene::{
     FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
 };
-use impactlab_draw::scene::SceneCourse;
+use impactlab_draw::scene::{Camera, Follow, SceneCourse, ScenePicture, ViewKind};
 use impactlab_study::analysis::{Analysis, DensityTask};
 use impactlab_study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest};
 
@@ -43,8 +43,8 @@ pub(super) struct SeenArgs {
     #[command(flatten)]
     pub(super) case: CaseArgs,
     /// From where the scene is seen
-    #[arg(long, value_enum, default_value_t)]
-    view: ViewArg,
+    #[arg(long, value_parser = one_value_of(VIEWS), default_value = "above")]
+    view: ViewKind,
     #[command(flatten)]
     camera: CameraArgs,
 }
@@ -76,41 +76,32 @@ struct CameraArgs {
     #[arg(long, value_name = "LENGTH", value_parser = number(CAMERA_DISTANCE))]
     distance: Option<f64>,
     /// The car in the middle of the picture
-    #[arg(long, value_enum)]
-    follow: Option<FollowArg>,
+    #[arg(long, value_parser = one_value_of(FOLLOWED))]
+    follow: Option<Follow>,
 }
 
 /// From where a scene is seen.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum ViewArg {
-    /// From above, to scale
-    #[default]
-    Above,
-    /// In perspective
-    Perspective,
-}
+const VIEWS: Values<ViewKind> =
+    &[(ViewKind::Above, "From above, to scale"), (ViewKind::Perspective, "In perspective")];
 
-/// A car that the camera follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum FollowArg {
-    /// The struck car
-    Struck,
-    /// The striking car, where it is known
-    Striking,
-}
+/// The cars that the camera can follow.
+const FOLLOWED: Values<Follow> = &[
+    (Follow::Struck, "The struck car"),
+    (Follow::Striking, "The striking car, where it is known"),
+];
 
 /// A scene as it is to be seen.
 pub(super) struct ShownScene {
     scene: Scene,
     courses: Vec<SceneCourse>,
     time_s: f64,
-    view: ViewArg,
+    view: ViewKind,
     camera: CameraArgs,
 }
 
 impl ShownScene {
     /// A scene of which everything is seen.
-    pub(super) fn fitted(scene: Scene, time_s: f64, view: ViewArg) -> Self {
+    pub(super) fn fitted(scene: Scene, time_s: f64, view: ViewKind) -> Self {
         Self { scene, courses: Vec::new(), time_s, view, camera: CameraArgs::default() }
     }
 
@@ -126,24 +117,16 @@ impl ShownScene {
 
     /// What it shows.
     pub(super) fn title(&self) -> String {
-        let view = match self.view {
-            ViewArg::Above => "from above",
-            ViewArg::Perspective => "in perspective",
-        };
-        self.scene.heading(view, self.time_s)
+        self.scene.heading(self.view.phrase(), self.time_s)
     }
 
     /// The picture that is drawn.
-    pub(super) fn picture(self) -> impactlab_draw::scene::ScenePicture {
-        use impactlab_draw::scene::{Camera, Follow, ScenePicture, ViewKind};
+    pub(super) fn picture(self) -> ScenePicture {
         let CameraArgs { azimuth, elevation, distance, follow } = self.camera;
         let usual = Camera::default();
         ScenePicture {
             camera: Camera {
-                kind: match self.view {
-                    ViewArg::Above => ViewKind::Above,
-                    ViewArg::Perspective => ViewKind::Perspective,
-                },
+                kind: self.view,
                 azimuth_rad: azimuth.unwrap_or(usual.azimuth_rad),
                 elevation_rad: elevation.unwrap_or(usual.elevation_rad),
                 ..usual
@@ -154,11 +137,7 @@ impl ShownScene {
             is_placed: false,
             seen_aspect: None,
             distance_m: distance.or(follow.map(|_| FOLLOW_M)),
-            follow: match follow {
-                None => Follow::Nothing,
-                Some(FollowArg::Struck) => Follow::Struck,
-                Some(FollowArg::Striking) => Follow::Striking,
-            },
+            follow: follow.unwrap_or_default(),
         }
     }
 }
