@@ -17,7 +17,7 @@ use crate::app::state::{Subject, View};
 use crate::app::widgets::{notice_ui, severity_color, working_ui};
 use impactlab_core::data::{DatasetKind, FileKind, Severity};
 use impactlab_core::error_chain;
-use impactlab_study::{CheckedDataset, CheckedFile};
+use impactlab_study::{CheckedDataset, CheckedFile, word};
 
 /// Largest number of problems of one data set that are listed; of further ones the number is shown.
 const SHOWN_PROBLEMS: usize = 50;
@@ -185,12 +185,7 @@ fn file_ui(
     selected: bool,
     commands: &mut Vec<Command>,
 ) {
-    let kind = match file.loaded.kind {
-        FileKind::Force => "force",
-        FileKind::Trajectory => "trajectory",
-        FileKind::Steer => "steer",
-        FileKind::Wheels => "wheels",
-    };
+    let kind = word(&file.loaded.kind);
     let n_samples = file.loaded.series.n_samples();
     let response =
         ui.selectable_label(selected, format!("{} · {kind}, {n_samples} samples", source.name()));

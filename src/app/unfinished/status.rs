@@ -74,10 +74,6 @@ impl UnfinishedTrainings {
         let folder = self.folder.as_ref()?;
         let now = humantime::format_rfc3339_millis(std::time::SystemTime::now()).to_string();
         let now: String = now.chars().filter(char::is_ascii_digit).collect();
-        let name = match network {
-            Network::Force => "force",
-            Network::Response => "response",
-        };
-        Some(folder.join(format!("{name}-{now}.{MODEL_ENDING}")))
+        Some(folder.join(format!("{}-{now}.{MODEL_ENDING}", network.stem())))
     }
 }
