@@ -39,12 +39,12 @@ pub(super) struct GroundArgs {
 }
 
 const UNITS: Words<LengthUnit> = &[
-    ("m", "metres", LengthUnit::Metre),
-    ("cm", "centimetres", LengthUnit::Centimetre),
-    ("mm", "millimetres", LengthUnit::Millimetre),
-    ("ft", "feet of 0.3048 m", LengthUnit::Foot),
-    ("us_survey_ft", "feet of 1200/3937 m", LengthUnit::SurveyFoot),
-    ("in", "inches", LengthUnit::Inch),
+    (LengthUnit::Metre.word(), "metres", LengthUnit::Metre),
+    (LengthUnit::Centimetre.word(), "centimetres", LengthUnit::Centimetre),
+    (LengthUnit::Millimetre.word(), "millimetres", LengthUnit::Millimetre),
+    (LengthUnit::Foot.word(), "feet of 0.3048 m", LengthUnit::Foot),
+    (LengthUnit::SurveyFoot.word(), "feet of 1200/3937 m", LengthUnit::SurveyFoot),
+    (LengthUnit::Inch.word(), "inches", LengthUnit::Inch),
 ];
 
 /// As many numbers with commas between them.

@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use crate::site::{EdgeLine, Site, SiteOrigin};
+use crate::site::{EdgeLine, LengthUnit, Site, SiteOrigin};
 use crate::units::UnitSystem;
 
 const SITE: &str = r#"name = "Crossing"
@@ -249,4 +249,13 @@ fn the_slope_of_the_road_is_read_told_and_comes_back() {
     assert_eq!(site.contents(None, UnitSystem::Si), ["slope of 4.0 % along X, -2.0 % along Y"]);
     let text = site.to_toml(folder.path()).unwrap();
     assert_eq!(read(folder.path(), &text).unwrap(), site, "{text}");
+}
+
+#[test]
+fn the_words_of_units_stand_beside_their_units() {
+    for (word, unit) in LengthUnit::WORDS.into_iter().zip(LengthUnit::ALL) {
+        assert_eq!(word.replace('-', "_"), unit.word(), "{unit:?}");
+    }
+    let (words, units) = LengthUnit::OF_WORLD_FILES;
+    assert_eq!(words, units.map(LengthUnit::word));
 }

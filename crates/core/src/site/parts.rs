@@ -158,7 +158,15 @@ pub enum LengthUnit {
 
 impl LengthUnit {
     /// Their words in a site file, in the order of [`LengthUnit::ALL`]; the last one is another spelling.
-    pub const WORDS: [&str; 7] = ["m", "cm", "mm", "ft", "us_survey_ft", "in", "us-survey-ft"];
+    pub const WORDS: [&str; 7] = [
+        Self::Metre.word(),
+        Self::Centimetre.word(),
+        Self::Millimetre.word(),
+        Self::Foot.word(),
+        Self::SurveyFoot.word(),
+        Self::Inch.word(),
+        "us-survey-ft",
+    ];
     /// What the words mean.
     pub const ALL: [Self; 7] = [
         Self::Metre,
@@ -170,13 +178,21 @@ impl LengthUnit {
         Self::SurveyFoot,
     ];
     /// The words for a world file, with what they mean.
-    pub const OF_WORLD_FILES: ([&str; 3], [Self; 3]) =
-        (["m", "ft", "us_survey_ft"], [Self::Metre, Self::Foot, Self::SurveyFoot]);
+    pub const OF_WORLD_FILES: ([&str; 3], [Self; 3]) = (
+        [Self::Metre.word(), Self::Foot.word(), Self::SurveyFoot.word()],
+        [Self::Metre, Self::Foot, Self::SurveyFoot],
+    );
 
     /// Its word.
-    pub fn word(self) -> &'static str {
-        let idx = Self::ALL.iter().position(|unit| *unit == self).unwrap_or_default();
-        Self::WORDS[idx]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Metre => "m",
+            Self::Centimetre => "cm",
+            Self::Millimetre => "mm",
+            Self::Foot => "ft",
+            Self::SurveyFoot => "us_survey_ft",
+            Self::Inch => "in",
+        }
     }
 
     /// Its length, m.
