@@ -63,7 +63,7 @@ fn nothing_asked_ui(
             ui.label("Choose a case in the Data workspace, open a file (File, or drop it here), or set up a scenario.");
             return;
         }
-        Some(Subject::Scenario | Subject::Manoeuvre) => return working_ui(ui),
+        Some(Subject::Scenario | Subject::Manoeuvre) => return working_ui(ui, "Working…"),
         Some(Subject::Case { dataset: path, .. } | Subject::File(path)) => path,
     };
     let name = file_name(path);
