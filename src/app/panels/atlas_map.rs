@@ -7,7 +7,9 @@ use crate::app::command::Command;
 use crate::app::dialog::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panes::{Pane, PaneContext};
-use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, figure_frame, notice_ui, working_ui};
+use crate::app::widgets::{
+    MIN_PLOT_HEIGHT, TITLE_HEIGHT, empty_ui, figure_frame, notice_ui, working_ui,
+};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_draw::FigureOptions;
@@ -90,8 +92,9 @@ fn no_atlas_ui(ui: &mut Ui, session: &AtlasSession, commands: &mut Vec<Command>)
     }
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.set_max_width(TEXT_WIDTH.min(ui.available_width()));
-        ui.heading("No atlas is open");
-        ui.label(
+        empty_ui(
+            ui,
+            "No atlas is open",
             "An atlas is a map of many computed collisions: how often a PIT spins a car, by speed, \
              angle, place of contact and road, and how much room it needs.",
         );

@@ -8,7 +8,7 @@ use crate::app::case_table::{CaseTable, listed_in};
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Subject, View};
-use crate::app::widgets::{notice_ui, severity_color};
+use crate::app::widgets::{empty_ui, notice_ui, severity_color};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 
@@ -23,9 +23,8 @@ const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     if listed_in(&session.sources, view).is_none() {
-        ui.strong("No data set is listed");
-        ui.label("The cases of a data set stand here, and a click on one shows it. Open a data set in the Data pane (a folder with cases.csv and forces/ or trajectories/), or click one that is open there.");
-        return;
+        let text = "The cases of a data set stand here, and a click on one shows it. Open a data set in the Data pane (a folder with cases.csv and forces/ or trajectories/), or click one that is open there.";
+        return empty_ui(ui, "No data set is listed", text);
     }
     let before = view.filter.clone();
     filter_ui(ui, view);

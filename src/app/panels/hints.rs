@@ -7,7 +7,7 @@ use crate::app::model::file_name;
 use crate::app::project::Project;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, Subject};
-use crate::app::widgets::{notice_ui, working_ui};
+use crate::app::widgets::{empty_ui, notice_ui, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_study::SimulateAnswer;
 
@@ -59,9 +59,8 @@ fn nothing_asked_ui(
 ) {
     let path = match subject {
         None => {
-            ui.strong("No case chosen");
-            ui.label("Choose a case in the Data workspace, open a file (File, or drop it here), or set up a scenario.");
-            return;
+            let text = "Choose a case in the Data workspace, open a file (File, or drop it here), or set up a scenario.";
+            return empty_ui(ui, "No case chosen", text);
         }
         Some(Subject::Scenario | Subject::Manoeuvre) => return working_ui(ui, "Working…"),
         Some(Subject::Case { dataset: path, .. } | Subject::File(path)) => path,
@@ -70,8 +69,8 @@ fn nothing_asked_ui(
     let source = sources.iter().find(|source| source.path == *path);
     match (source.map(|source| &source.content), subject) {
         (None, _) => {
-            ui.strong(format!("{name} is not open"));
-            ui.label("What is chosen comes from there. Open it again, or choose something else in the Data workspace.");
+            let text = "What is chosen comes from there. Open it again, or choose something else in the Data workspace.";
+            empty_ui(ui, format!("{name} is not open"), text);
             let button = ui.button(format!("Open {name}"));
             if button.on_hover_text(path.display().to_string()).clicked() {
                 commands.push(Command::Open(vec![path.clone()]));
@@ -84,8 +83,8 @@ fn nothing_asked_ui(
         (Some(Content::Dataset(checked)), Some(Subject::Case { case, .. }))
             if checked.dataset.case(case).is_none() =>
         {
-            ui.strong(format!("{name} has no case {case}"));
-            ui.label("Choose another one in the Data workspace.");
+            let title = format!("{name} has no case {case}");
+            empty_ui(ui, title, "Choose another one in the Data workspace.");
         }
         (Some(_), _) => working_ui(ui, "Working…"),
     }

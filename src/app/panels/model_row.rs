@@ -8,7 +8,7 @@ use crate::app::dialog::Purpose;
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
 use crate::app::output::Output;
-use crate::app::widgets::{notice_ui, severity_color, working_ui};
+use crate::app::widgets::{empty_ui, notice_ui, severity_color, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_study::MODEL_ENDING;
 use impactlab_study::ModelChoice;
@@ -27,10 +27,10 @@ pub fn no_model_ui<M: TrainedModel>(
     if model.is_loading() {
         return working_ui(ui, format!("Loading the {name}…"));
     }
-    ui.label(RichText::new(format!("No {name}")).strong());
-    ui.label(format!(
+    let text = format!(
         "{use_of_it} Open one (a file ending in .{MODEL_ENDING}), or train one on data of your own."
-    ));
+    );
+    empty_ui(ui, format!("No {name}"), text);
     if let Some(problem) = &model.problem {
         notice_ui(ui, Severity::Warning, problem);
     }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use egui::{Button, Label, ScrollArea, Ui};
+use egui::{Button, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -16,7 +16,8 @@ use crate::app::question_job::QuestionJob;
 use crate::app::recorder::RecorderCommand;
 use crate::app::source::{Content, Source};
 use crate::app::widgets::{
-    facts_ui, figure_frame, notice_ui, replay_assumptions_ui, restrictions_ui, run_progress_ui,
+    empty_ui, facts_ui, figure_frame, notice_ui, replay_assumptions_ui, restrictions_ui,
+    run_progress_ui,
 };
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
@@ -68,12 +69,11 @@ fn asks_for(path: &Path) -> Command {
 
 /// Says what is needed, and offers the files that are open.
 fn start_ui(ui: &mut Ui, sources: &[Source], commands: &mut Vec<Command>) {
-    ui.strong("What did a car do before the contact?");
     let needs = "By the speed and the steering wheel of its event data recorder: how it met the other car, its way \
                  there, and where it came from. Needed: a Bosch CDR report as CSV, or a table with Time [s], Speed \
                  [km/h] and Steering Wheel Angle [deg], in which time 0 is the crash; a yaw rate and the brake \
                  switch are used if they are there.";
-    ui.add(Label::new(needs).wrap());
+    empty_ui(ui, "What did a car do before the contact?", needs);
     ui.add_space(looks::PART);
     if ui.add(icon_button(Icon::FolderOpen, "Open a recorder's file…")).clicked() {
         commands.push(Command::Ask(Purpose::Files));

@@ -13,7 +13,7 @@ use crate::app::panes::PaneContext;
 use crate::app::state::Session;
 use crate::app::sweep::{KnownSweep, SweepCommand, SweepView, TimedRows};
 use crate::app::tasks::TaskKey;
-use crate::app::widgets::{duration_text, notice_ui, run_progress_ui, working_ui};
+use crate::app::widgets::{duration_text, empty_ui, notice_ui, run_progress_ui, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_sweep::{Design, SweptQuestion};
 
@@ -48,8 +48,9 @@ pub fn sweep_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Draws what a sweep is and how to begin one.
 fn no_sweep_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
-    ui.heading("One question, many times");
-    ui.label(
+    empty_ui(
+        ui,
+        "One question, many times",
         "A sweep asks one question with inputs that vary, such as a PIT over speeds, angles and roads, \
          and writes a row for each run. Its rows make an atlas, or a table for your own programs.",
     );

@@ -12,7 +12,7 @@ use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
 use crate::app::panes::{Pane, PaneContext};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionCommand, ReconstructionSession};
-use crate::app::widgets::{count_field, notice_ui, run_progress_ui, seed_field};
+use crate::app::widgets::{count_field, empty_ui, notice_ui, run_progress_ui, seed_field};
 use impactlab_core::data::Severity;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_reconstruct::evidence::Evidence;
@@ -67,8 +67,9 @@ fn start_ui(
         let text = format!("{} cannot be read: {problem}", path.display());
         notice_ui(ui, Severity::Error, text);
     }
-    ui.strong("How fast were the cars?");
-    ui.label(
+    empty_ui(
+        ui,
+        "How fast were the cars?",
         "From what was found after a collision (rest position, tire marks, damage, recorder, friction, \
          masses) back to the speeds before it, or from the marks and the rest of a single car to its speed at \
          their start, as a distribution.",

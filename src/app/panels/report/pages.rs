@@ -6,6 +6,7 @@ use egui::{Align, Color32, Frame, Label, Margin, RichText, ScrollArea, Stroke, T
 use crate::app::panels::report::table::table_ui;
 use crate::app::panes::PaneContext;
 use crate::app::report::ReportSession;
+use crate::app::widgets::empty_ui;
 use impactlab_core::data::Severity;
 use impactlab_document::report::{Block, Picture, Section};
 use impactlab_draw::theme;
@@ -23,13 +24,10 @@ const BEFORE_HEADING: f32 = 12.0;
 pub fn report_pages_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let report = &mut pane.session.report;
     let Some(made) = report.made.clone() else {
-        ui.label(RichText::new("No report yet").strong());
-        ui.label(
-            "Make the report in the pane at the left. It tells question and answers with their \
+        let text = "Make the report in the pane at the left. It tells question and answers with their \
              intervals, inputs with their sources, evidence, method, validity, validation, seeds and \
-             digests of files and networks.",
-        );
-        return;
+             digests of files and networks.";
+        return empty_ui(ui, "No report yet", text);
     };
     let wanted = report.wanted_section.take();
     let is_outdated = report.is_outdated;
