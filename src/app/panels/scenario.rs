@@ -99,8 +99,8 @@ fn forms_ui(
     approach_form(ui, scenario, units);
     contact_form(ui, &mut scenario.contact, pulse, units);
     let Scenario { ending, striking_ending, .. } = scenario;
-    for (vehicle, ending) in [("struck vehicle", ending), ("striking vehicle", striking_ending)] {
-        ending_form(ui, vehicle, ending, &mut beside.steering_ratio, units);
+    for (role, ending) in Role::ALL.into_iter().zip([ending, striking_ending]) {
+        ending_form(ui, role.label(), ending, &mut beside.steering_ratio, units);
     }
     slope_form(ui, &mut scenario.road, units);
 }

@@ -4,7 +4,7 @@ use egui::{Id, Ui};
 
 use crate::app::command::Command;
 use crate::app::widgets::figure_frame;
-use impactlab_core::collision::{ContactLocation, Pose, Scenario, ScenarioVehicle, Side};
+use impactlab_core::collision::{self, ContactLocation, Pose, Scenario, ScenarioVehicle, Side};
 use impactlab_core::numerics::nearest_multiple;
 use impactlab_core::ranges::{HEADING, POSITION, SPEED};
 use impactlab_core::units::{Quantity, UnitSystem};
@@ -214,15 +214,19 @@ fn nearest_handle(scenario: &Scenario, [x, y]: [f64; 2], reach_m: f64) -> Option
     near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, found)| found)
 }
 
+/// Both vehicles, with what they are called and drawn as.
+fn vehicles(scenario: &Scenario) -> [(&'static str, Role, &ScenarioVehicle); 2] {
+    [
+        (collision::Role::Struck.label(), Role::Simulation, &scenario.struck),
+        (collision::Role::Striking.label(), Role::Striking, &scenario.striking),
+    ]
+}
+
 /// Both vehicles without an impulse, while there is no solution.
 fn outlines_figure(scenario: &Scenario, units: UnitSystem) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
-    let vehicles = [
-        ("struck vehicle", Role::Simulation, &scenario.struck),
-        ("striking vehicle", Role::Striking, &scenario.striking),
-    ];
-    let placed = vehicles.into_iter().zip(poses(scenario));
+    let placed = vehicles(scenario).into_iter().zip(poses(scenario));
     let elements = placed.filter_map(|((name, role, vehicle), pose)| {
         let (style, footprint) = (LineStyle::Solid, vehicle.footprint());
         Some(vehicle_outline(name, role, style, &footprint, &pose?, x.unit))
@@ -236,11 +240,7 @@ fn outlines_figure(scenario: &Scenario, units: UnitSystem) -> Figure {
 fn with_handles(mut figure: Figure, scenario: &Scenario) -> Figure {
     let unit = figure.x.unit;
     let shown = |point: [f64; 2]| point.map(|value| unit.from_si(value));
-    let vehicles = [
-        ("struck vehicle", Role::Simulation, &scenario.struck),
-        ("striking vehicle", Role::Striking, &scenario.striking),
-    ];
-    for ((name, role, vehicle), pose) in vehicles.into_iter().zip(poses(scenario)) {
+    for ((name, role, vehicle), pose) in vehicles(scenario).into_iter().zip(poses(scenario)) {
         let Some(pose) = pose else { continue };
         let places = handles(vehicle, &pose).map(|(_, place)| place);
         let velocity = format!("velocity of the {name}, way in {ARROW_S} s");

@@ -1,8 +1,8 @@
 //! The figures of an [`Analysis`]: force and motion over time, and the scene from above.
 
 use crate::figure::{
-    Figure, FigureElement, ForceFigure, LineStyle, Role, SceneFigure, SceneVehicle, Series,
-    force_figure, motion_figure, motion_readout, scene_figure,
+    Figure, FigureElement, ForceFigure, LineStyle, Role, STRIKING, SceneFigure, SceneVehicle,
+    Series, force_figure, motion_figure, motion_readout, scene_figure,
 };
 use impactlab_core::collision::{ChannelClass, FilterError, filter_history};
 use impactlab_core::data::{Channel, ForceHistory, TimeSeries, contact_interval};
@@ -83,7 +83,7 @@ pub fn analysis_scene_figure(
 ) -> Figure {
     let footprint = analysis.footprint;
     let striking = analysis.striking.as_ref().map(|track| SceneVehicle {
-        name: "striking vehicle",
+        name: STRIKING,
         role: Role::Striking,
         style: LineStyle::Solid,
         motion: &track.motion,

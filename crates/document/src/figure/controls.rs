@@ -1,6 +1,7 @@
 //! What drivers, brakes and stability control did to the wheels of both vehicles over time.
 
 use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series};
+use impactlab_core::collision;
 use impactlab_core::data::{Channel, TimeSeries};
 use impactlab_core::numerics::interpolate;
 use impactlab_core::uncertainty::Caveats;
@@ -8,8 +9,9 @@ use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_core::vehicle::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, Wheel};
 use impactlab_study::analysis::Analysis;
 
-/// What figures of the inputs to the wheels call the vehicle that is simulated.
-pub(crate) const STRUCK: &str = "struck vehicle";
+/// What figures call both vehicles.
+pub(crate) const STRUCK: &str = collision::Role::Struck.label();
+pub(crate) const STRIKING: &str = collision::Role::Striking.label();
 
 /// What a figure of the inputs to the wheels shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,7 +157,7 @@ fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
     let striking = analysis.striking.as_ref().map(|track| {
         let radius_m = track.start.vehicle.tires.rolling_radius_m;
         DrivenVehicle {
-            name: "striking vehicle",
+            name: STRIKING,
             role: Role::Striking,
             style: LineStyle::Dashed,
             motion: &track.motion,

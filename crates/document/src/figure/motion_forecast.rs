@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use crate::figure::scene::{path_of, vehicle_outline};
-use crate::figure::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series};
+use crate::figure::{
+    Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, STRIKING, Series,
+};
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::data::{Channel, TimeSeries};
 use impactlab_core::uncertainty::Caveats;
@@ -186,7 +188,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
     if let Some((central, footprint)) = input.striking {
-        let (role, name) = (Role::Striking, "striking vehicle");
+        let (role, name) = (Role::Striking, STRIKING);
         elements.push(path(name, role, &central.iter().collect::<Vec<_>>()));
         if let Some(state) = central.get(at) {
             let pose = Pose::from_state(state);

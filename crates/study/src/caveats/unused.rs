@@ -343,11 +343,9 @@ pub(crate) fn vehicles_not_drawn(
 }
 
 /// A vehicle that was chosen for recorded pairs, which have their own.
-///
-/// - `role`: which one it is, as a label.
-pub(crate) fn vehicle_of_pair(role: &str) -> Caveat {
+pub(crate) fn vehicle_of_pair(role: Role) -> Caveat {
     Caveat::not_used(
-        Phrase::of(PhraseValue::Term(role.to_owned())),
+        Phrase::of(PhraseValue::Term(role.label().to_owned())),
         Phrase::new(
             "each recorded pair says itself which vehicles it has",
             "jedes aufgezeichnete Paar nennt seine Fahrzeuge selbst",
@@ -385,9 +383,9 @@ fn by_record(request: &SimulateRequest) -> Vec<Caveat> {
 
 /// What the simulation of a recorded pair does not use of its question.
 pub(crate) fn by_recorded_pair(request: &SimulateRequest) -> Vec<Caveat> {
-    let cars = [("struck vehicle", &request.vehicle), ("striking vehicle", &request.striking)];
-    let cars = cars.into_iter().filter(|(_, choice)| **choice != VehicleChoice::Automatic);
-    let cars = cars.map(|(name, _)| vehicle_of_pair(name));
+    let cars = Role::ALL.into_iter().zip([&request.vehicle, &request.striking]);
+    let cars = cars.filter(|(_, choice)| **choice != VehicleChoice::Automatic);
+    let cars = cars.map(|(role, _)| vehicle_of_pair(role));
     let one_contact = request.one_contact.then(|| {
         Caveat::not_used(
             Phrase::new("one contact only", "nur der erste Kontakt"),

@@ -11,6 +11,7 @@ use crate::{
     Answer, Event, FlagReport, Observer, Provenance, ReplayedCaseReport, SimulateDatasetAnswer,
     SimulateDatasetReport, SimulateDatasetRequest, StudyError, VehicleChoice, word,
 };
+use impactlab_core::collision::Role;
 use impactlab_core::collision::contact::PairMotion;
 use impactlab_core::compare::{
     DatasetReplay, ErrorSummary, MotionError, PairCase, PairRecords, largest_yaw_change_rad,
@@ -91,7 +92,7 @@ impl SimulateDatasetRequest {
         caveats.extend(restrictions::left_out_caveat(failures.len(), "cases"));
         caveats.extend(integrator_of_pair(self.integrator));
         caveats.extend(
-            (self.vehicle != VehicleChoice::Automatic).then(|| vehicle_of_pair("struck vehicle")),
+            (self.vehicle != VehicleChoice::Automatic).then(|| vehicle_of_pair(Role::Struck)),
         );
         caveats.extend([contact_at_medians(false)]);
         let summary = |choose: fn(&ReplayedCaseReport) -> bool| {
