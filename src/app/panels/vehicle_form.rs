@@ -9,8 +9,8 @@ use crate::app::panels::crush_form::crush_form_ui;
 use crate::app::widgets::{problem_line_ui, quantity_value, salted_choice_row};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::{self, NumberFormat, UnitSystem};
-use impactlab_core::vehicle::sheet::{Drive, Estimate};
-use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass};
+use impactlab_core::vehicle::sheet::Estimate;
+use impactlab_core::vehicle::{DataSheet, DrivenAxle, SheetQuantity, VehicleClass};
 
 /// Largest width of a label and of a value, points.
 const LABEL_WIDTH: f32 = 165.0;
@@ -66,13 +66,9 @@ fn head_ui(ui: &mut Ui, title: &str, sheet: &mut DataSheet) {
     let class =
         salted_choice_row(ui, (title, "class"), "Class", class, &classes, VehicleClass::word);
     class.on_hover_text("Says which rules estimate the rest");
-    let choices = [None, Some(Drive::Front), Some(Drive::Rear), Some(Drive::All)];
-    let word = |drive: Option<Drive>| match drive {
-        None => "not known",
-        Some(Drive::Front) => "front",
-        Some(Drive::Rear) => "rear",
-        Some(Drive::All) => "both",
-    };
+    let axles = DrivenAxle::ALL.iter().copied().map(Some);
+    let choices: Vec<_> = std::iter::once(None).chain(axles).collect();
+    let word = |drive: Option<DrivenAxle>| drive.map_or("not known", DrivenAxle::word);
     let drive = &mut sheet.drive;
     salted_choice_row(ui, (title, "drive"), "Driven axle", drive, &choices, word);
 }

@@ -377,6 +377,8 @@ impl Braking {
 impl DrivenAxle {
     /// All of them.
     pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
+    /// Their words in a file, in the order of [`DrivenAxle::ALL`].
+    pub const WORDS: &'static [&'static str] = <Self as strum::VariantNames>::VARIANTS;
 
     /// Its word in a file and in a list.
     pub fn word(self) -> &'static str {

@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use crate::numerics::NORMAL_QUANTILE_95;
 use crate::units::{self, Interval};
-use crate::vehicle::sheet::{Drive, Rule, SheetQuantity, VehicleClass};
-use crate::vehicle::{CrushParameters, Equations, VehicleMismatch, VehicleParameters};
+use crate::vehicle::sheet::{Rule, SheetQuantity, VehicleClass};
+use crate::vehicle::{CrushParameters, DrivenAxle, Equations, VehicleMismatch, VehicleParameters};
 
 /// Largest number of standard deviations that an estimate is drawn from its median.
 const MAX_LATENT: f64 = 2.6;
@@ -27,8 +27,8 @@ pub struct DataSheet {
     pub equations: Equations,
     /// Kind of vehicle.
     pub class: VehicleClass,
-    /// Driven axle, if known.
-    pub drive: Option<Drive>,
+    /// Driven axle, if known; it says where the engine's weight is.
+    pub drive: Option<DrivenAxle>,
     /// How stiff its faces are, as far as it is known.
     pub crush: CrushParameters,
     pub(super) known: BTreeMap<SheetQuantity, f64>,

@@ -35,8 +35,8 @@ use crate::ranges::{
     CG_TO_AXLE, ROLL_DAMPING, ROLL_STIFFNESS, STATIC_STABILITY_FACTOR, TRACK_WIDTH, VEHICLE_MASS,
 };
 use crate::units::INCH_M;
-use crate::vehicle::sheet::{DataSheet, Drive, SheetQuantity as Q, VehicleClass};
-use crate::vehicle::{CrushParameters, Equations};
+use crate::vehicle::sheet::{DataSheet, SheetQuantity as Q, VehicleClass};
+use crate::vehicle::{CrushParameters, DrivenAxle, Equations};
 
 const EQUATIONS: [&str; 2] = ["corrected", "paper"];
 
@@ -56,13 +56,13 @@ impl DataSheet {
         let mut table = top.table("data_sheet")?;
         top.finish()?;
         let class = table.choice("class", &VehicleClass::WORDS)?;
-        let drive = table.choice("drive", &Drive::WORDS)?;
+        let drive = table.choice("drive", DrivenAxle::WORDS)?;
         let mut sheet = Self {
             name: name.unwrap_or_else(|| file.name()),
             source: source.unwrap_or_default(),
             equations: if equations == Some(1) { Equations::Paper } else { Equations::Corrected },
             class: class.map_or(VehicleClass::Any, |idx| VehicleClass::ALL[idx]),
-            drive: drive.map(|idx| Drive::ALL[idx]),
+            drive: drive.map(|idx| DrivenAxle::ALL[idx]),
             crush,
             ..Self::default()
         };

@@ -15,6 +15,6 @@ mod unusual;
 pub use data_sheet::{DataSheet, Estimate};
 pub(super) use derive::AIR_DENSITY_KG_M3;
 pub use library::LibraryVehicle;
-pub use quantity::{Drive, SheetQuantity, VehicleClass};
+pub use quantity::{SheetQuantity, VehicleClass};
 pub use rules::{Rule, Scatter};
 pub use unusual::Unusual;

@@ -28,18 +28,6 @@ pub enum VehicleClass {
     Van,
 }
 
-/// Which axle is driven; it says where the engine's weight is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Drive {
-    /// Front axle.
-    Front,
-    /// Rear axle.
-    Rear,
-    /// Both axles.
-    All,
-}
-
 impl VehicleClass {
     /// Every class, from the smallest car to the commercial vehicles.
     pub const ALL: [Self; 5] = [Self::Any, Self::Car, Self::Suv, Self::Pickup, Self::Van];
@@ -55,13 +43,6 @@ impl VehicleClass {
     pub const fn word(self) -> &'static str {
         self.pick(Self::WORDS)
     }
-}
-
-impl Drive {
-    /// Every kind of drive.
-    pub const ALL: [Self; 3] = [Self::Front, Self::Rear, Self::All];
-    /// The words in a vehicle file, in the order of [`Drive::ALL`].
-    pub const WORDS: [&'static str; 3] = ["front", "rear", "all"];
 }
 
 macro_rules! quantities {
@@ -174,6 +155,7 @@ quantities! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vehicle::DrivenAxle;
 
     #[test]
     fn the_words_stand_in_the_order_of_the_classes() {
@@ -181,8 +163,9 @@ mod tests {
             assert_eq!(class.word(), word);
             assert_eq!(serde_json::to_string(&class).unwrap(), format!("\"{word}\""));
         }
-        for (drive, word) in Drive::ALL.into_iter().zip(Drive::WORDS) {
-            assert_eq!(serde_json::to_string(&drive).unwrap(), format!("\"{word}\""));
+        for (axle, word) in DrivenAxle::ALL.iter().zip(DrivenAxle::WORDS) {
+            assert_eq!(axle.word(), *word);
+            assert_eq!(serde_json::to_string(axle).unwrap(), format!("\"{word}\""));
         }
     }
 }

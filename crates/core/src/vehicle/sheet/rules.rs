@@ -22,7 +22,8 @@
 //!   8.6 and 18.5 1/rad).
 //! - What no source could be found for is said to be assumed, with a wide scatter.
 
-use crate::vehicle::sheet::{Drive, SheetQuantity, VehicleClass};
+use crate::vehicle::DrivenAxle;
+use crate::vehicle::sheet::{SheetQuantity, VehicleClass};
 use crate::vehicle::tire::WHEEL_MASS_SHARE;
 
 use super::data_sheet::SheetValues;
@@ -70,7 +71,7 @@ impl Rule {
     pub(super) fn new(
         quantity: SheetQuantity,
         class: VehicleClass,
-        drive: Option<Drive>,
+        drive: Option<DrivenAxle>,
         values: &SheetValues<'_>,
     ) -> Self {
         use SheetQuantity as Q;
@@ -181,15 +182,15 @@ fn size(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues<'_>) 
     }
 }
 
-fn front_share(class: VehicleClass, drive: Option<Drive>) -> Rule {
+fn front_share(class: VehicleClass, drive: Option<DrivenAxle>) -> Rule {
     let (median, deviation, text) = match drive {
-        Some(Drive::Front) => (0.605, 0.020, "front-wheel drive"),
-        Some(Drive::Rear) => (
+        Some(DrivenAxle::Front) => (0.605, 0.020, "front-wheel drive"),
+        Some(DrivenAxle::Rear) => (
             class.pick([0.535, 0.520, 0.523, 0.569, 0.520]),
             class.pick([0.035, 0.030, 0.020, 0.020, 0.040]),
             "rear-wheel drive, by class",
         ),
-        Some(Drive::All) | None => (
+        Some(DrivenAxle::All) | None => (
             class.pick([0.570, 0.590, 0.547, 0.576, 0.575]),
             class.pick([0.040, 0.036, 0.028, 0.020, 0.035]),
             "by class",

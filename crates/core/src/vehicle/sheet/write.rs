@@ -11,8 +11,8 @@ use crate::data::{TomlError, TomlFile, key_with_unit};
 use crate::ranges::Range;
 use crate::units::{Quantity, STANDARD_GRAVITY_M_S2};
 use crate::vehicle::sheet::derive::AIR_DENSITY_KG_M3;
-use crate::vehicle::sheet::{DataSheet, Drive, SheetQuantity as Q, VehicleClass};
-use crate::vehicle::{Equations, VehicleParameters};
+use crate::vehicle::sheet::{DataSheet, SheetQuantity as Q, VehicleClass};
+use crate::vehicle::{DrivenAxle, Equations, VehicleParameters};
 
 /// Name of a sheet that has no file, in errors.
 const NO_FILE: &str = "data sheet";
@@ -46,8 +46,7 @@ impl DataSheet {
         let mut sheet = toml::Table::new();
         sheet.insert("class".to_owned(), self.class.word().into());
         if let Some(drive) = self.drive {
-            let word = Drive::ALL.iter().position(|known| *known == drive).map(|i| Drive::WORDS[i]);
-            sheet.extend(word.map(|word| ("drive".to_owned(), word.into())));
+            sheet.insert("drive".to_owned(), drive.word().into());
         }
         sheet.extend(
             self.known.iter().map(|(quantity, value)| (quantity.si_key(), (*value).into())),
@@ -177,7 +176,7 @@ impl JsonSchema for DataSheet {
             |replaced: &str| number(format!("where it is known instead of the {replaced}"));
         properties.extend([
             ("class".to_owned(), words(&classes, "Kind of vehicle.")),
-            ("drive".to_owned(), words(&Drive::WORDS, "Driven axle, if it is known.")),
+            ("drive".to_owned(), words(DrivenAxle::WORDS, "Driven axle, if it is known.")),
             ("roll_stiffness_n_m_rad".to_owned(), instead("roll gradient")),
             ("roll_damping_n_m_s_rad".to_owned(), instead("damping ratio")),
         ]);
