@@ -22,7 +22,7 @@ use crate::app::state::State;
 use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::{severity_color, severity_icon, with_time_left};
+use crate::app::widgets::{notice_in_row_ui, severity_color, severity_icon, with_time_left};
 use crate::app::workspaces::Workspace;
 use impactlab_core::data::Severity;
 use impactlab_core::jobs::{Job, Progress};
@@ -344,10 +344,9 @@ pub fn messages_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             ui.weak("Nothing has been said since the start.");
         }
         for (time, message) in state.session.log.iter().rev() {
-            let color = severity_color(ui, message.severity);
             ui.horizontal_wrapped(|ui| {
                 ui.monospace(time);
-                ui.label(RichText::new(&message.text).color(color));
+                notice_in_row_ui(ui, message.severity, &message.text);
             });
         }
     });

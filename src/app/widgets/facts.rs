@@ -2,8 +2,7 @@
 
 use egui::{Grid, Label, ScrollArea, Ui};
 
-use crate::app::looks::{self, Icon};
-use crate::app::widgets::{severity_color, value_ui};
+use crate::app::widgets::{notice_in_row_ui, value_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::{FactTable, FactWriter, TextRow, TextTable};
@@ -107,11 +106,7 @@ fn name_ui(ui: &mut Ui, row: &TextRow) {
 fn cell_ui(ui: &mut Ui, row: &TextRow, idx: usize) {
     let cell = row.cells.get(idx).map_or("", String::as_str);
     if row.is_warning && idx + 1 == row.cells.len() {
-        let color = severity_color(ui, Severity::Warning);
-        ui.horizontal(|ui| {
-            looks::icon_ui(ui, Icon::TriangleAlert, color);
-            ui.colored_label(color, cell);
-        });
+        ui.horizontal(|ui| notice_in_row_ui(ui, Severity::Warning, cell));
     } else {
         value_ui(ui, cell);
     }

@@ -33,6 +33,13 @@ pub fn notice_ui(ui: &mut Ui, severity: Severity, text: impl Into<RichText>) -> 
     line.inner
 }
 
+/// The same among other parts of a row, in the layout of the row.
+pub fn notice_in_row_ui(ui: &mut Ui, severity: Severity, text: impl Into<RichText>) -> Response {
+    let color = severity_color(ui, severity);
+    looks::icon_ui(ui, severity_icon(severity), color);
+    ui.colored_label(color, text)
+}
+
 #[cfg(test)]
 mod tests {
     use egui::{Context, RawInput, Shape};
@@ -52,6 +59,7 @@ mod tests {
             let output = context.run_ui(RawInput::default(), |ui| {
                 color = severity_color(ui, severity);
                 notice_ui(ui, severity, "a reason");
+                notice_in_row_ui(ui, severity, "in a row");
             });
             let drawn = output.shapes.iter().filter_map(|clipped| match &clipped.shape {
                 Shape::Text(text) => Some(&text.galley),
@@ -59,7 +67,8 @@ mod tests {
             });
             let drawn: Vec<_> = drawn.collect();
             let texts: Vec<&str> = drawn.iter().map(|galley| galley.text()).collect();
-            assert_eq!(texts, [char::from(icon).to_string().as_str(), "a reason"], "{severity:?}");
+            let icon = char::from(icon).to_string();
+            assert_eq!(texts, [&*icon, "a reason", &*icon, "in a row"], "{severity:?}");
             for galley in drawn {
                 let is_colored = galley.job.sections.iter().all(|part| part.format.color == color);
                 assert!(is_colored, "{severity:?}: {}", galley.text());

@@ -12,7 +12,7 @@ use crate::app::network::Network;
 use crate::app::output::Output;
 use crate::app::panes::PaneContext;
 use crate::app::project::Project;
-use crate::app::widgets::{facts_ui, notice_ui, severity_color, working_ui};
+use crate::app::widgets::{facts_ui, notice_in_row_ui, notice_ui, severity_color, working_ui};
 use impactlab_core::data::Severity;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::facts::Term;
@@ -65,8 +65,7 @@ fn summary_ui(ui: &mut Ui, archive: &ArchiveStatus) {
 
 fn problem_ui(ui: &mut Ui, problem: &ArchiveProblem, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
-        let color = severity_color(ui, Severity::Error);
-        ui.colored_label(color, format!("Cannot be used: {}", problem.reason));
+        notice_in_row_ui(ui, Severity::Error, format!("Cannot be used: {}", problem.reason));
         if let Some(first) = problem.files.first()
             && ui.small_button("Remove…").clicked()
         {

@@ -9,7 +9,7 @@ use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::state::Session;
 use crate::app::unfinished::Unfinished;
-use crate::app::widgets::severity_color;
+use crate::app::widgets::{notice_in_row_ui, severity_color};
 use impactlab_core::data::Severity;
 
 /// Whether there is a training that can go on, or a checkpoint that cannot be used.
@@ -29,10 +29,9 @@ pub fn unfinished_ui(ui: &mut Ui, session: &Session, commands: &mut Vec<Command>
         let how = how_it_was_made(&of.note.question);
         ui.weak(format!("{how}; started {}", moment_text(&of.note.started)));
     }
-    let color = severity_color(ui, Severity::Error);
     for lost in &session.unfinished.list.lost {
         ui.horizontal_wrapped(|ui| {
-            ui.colored_label(color, format!("Cannot be resumed: {}", lost.reason));
+            notice_in_row_ui(ui, Severity::Error, format!("Cannot be resumed: {}", lost.reason));
             if !lost.files.is_empty() && ui.small_button("Discard…").clicked() {
                 let name = lost.files[0].display().to_string();
                 let what = "The checkpoint is removed from the disk.".to_owned();
