@@ -77,4 +77,6 @@ pub struct SavedCase {
     pub(super) fingerprint: String,
     /// Which of the cases of the window it is, by `Session::n_cases`.
     pub(super) n_cases: u64,
+    /// How many entries the log of the case had before the save was noted.
+    pub(super) n_noted: usize,
 }

@@ -24,7 +24,7 @@ use impactlab_core::data::write::ModelDigest;
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
-use impactlab_study::case_file::{CaseFile, CaseOnDisk, PackedFile, UsedModel, pack};
+use impactlab_study::case_file::{CaseFile, CaseOnDisk, LogEntry, PackedFile, UsedModel, pack};
 use impactlab_study::{MotionSource, Request, SeriesFile};
 
 /// The finished example case.
@@ -388,6 +388,7 @@ impl State {
             file.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
         let (fingerprint, n_cases) = (super::fingerprint_of(&file), self.session.n_cases);
+        let n_noted = file.log.len();
         file.note("saved");
         let write = move |_: &mut ProgressCallback<'_>| {
             file.record_files();
@@ -395,7 +396,8 @@ impl State {
             let on_disk = file.to_text(&path).map_err(|error| error_chain(&error))?;
             file.save(&path, existing).map_err(|error| error_chain(&error))?;
             let reach = file.reach(&path);
-            Ok(Found::new(SavedCase { file, path, on_disk, reach, fingerprint, n_cases }))
+            let saved = SavedCase { file, path, on_disk, reach, fingerprint, n_cases, n_noted };
+            Ok(Found::new(saved))
         };
         self.session
             .tasks
@@ -434,12 +436,12 @@ impl State {
                 self.say(Severity::Info, format!("{} written", path.display()));
                 self.remember_case(path);
             }
-            Ok(SavedCase { file, path, on_disk, reach, fingerprint, .. }) => {
+            Ok(SavedCase { file, path, on_disk, reach, fingerprint, n_noted, .. }) => {
                 self.trust_own(path.clone(), reach);
                 let case = &mut self.case;
                 case.file.name = file.name;
                 case.file.files = file.files;
-                case.file.log = file.log;
+                note_saved(&mut case.file.log, file.log, n_noted);
                 case.path = Some(path.clone());
                 (case.on_disk, case.saved) = (Some(on_disk), Some(fingerprint));
                 self.say(Severity::Info, format!("{} written", path.display()));
@@ -469,6 +471,18 @@ impl State {
             self.say(Severity::Warning, why);
         }
     }
+}
+
+/// Takes what a save has noted into the log of its case, before what was noted while it was written.
+///
+/// - `in_file`: the log in the file that was written; from its entry `n_noted` on it is about the save.
+fn note_saved(log: &mut Vec<LogEntry>, mut in_file: Vec<LogEntry>, n_noted: usize) {
+    let of_save = in_file.split_off(n_noted.min(in_file.len()));
+    let later = log.get(n_noted..).unwrap_or_default();
+    // A save that was begun earlier and noted meanwhile stays before this one.
+    let is_earlier = |of: &&LogEntry| of_save.first().is_some_and(|saved| of.time < saved.time);
+    let at = (n_noted + later.iter().take_while(is_earlier).count()).min(log.len());
+    log.splice(at..at, of_save);
 }
 
 /// The files in a package, the first ones by their paths.
