@@ -90,7 +90,7 @@ use impactlab_draw::{DensityGpu, theme};
 
 pub use archive::{ArchiveEntry, ArchiveKind, ArchiveStatus, ModelsDialog, Removal};
 pub use atlas::{AtlasCommand, AtlasSession, AtlasView, MapChoice, ShownMap};
-pub use case::{CaseCommand, Leaving, OpenCase, TrustedCase, VariantCommand};
+pub use case::{CaseCommand, Leaving, LeavingStage, OpenCase, TrustedCase, VariantCommand};
 pub use chain::Link;
 pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
@@ -405,15 +405,17 @@ impl App {
         self.state.session.fit_plots = false;
     }
 
-    /// Keeps the window open as long as something would be lost that the user has not given up.
+    /// Keeps the window open as long as something is being written, or would be lost that the user has not
+    /// given up.
     fn ask_before_closing(&mut self, context: &Context) {
         let is_closing = context.input(|input| input.viewport().close_requested());
         if !is_closing || self.state.session.may_close {
             return;
         }
-        if !self.state.reasons_to_stay(&Leaving::Quit).is_empty() {
+        let is_writing = self.state.session.tasks.has_writes();
+        if is_writing || !self.state.reasons_to_stay(&Leaving::Quit).is_empty() {
             context.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.state.ask_before_leaving(Leaving::Quit);
+            self.state.leave(Leaving::Quit, context);
         }
     }
 }

@@ -265,6 +265,11 @@ impl Tasks {
         self.running.iter().any(|task| task.key.is_write())
     }
 
+    /// Leaves what is being written as it is, without waiting for it: the program ends.
+    pub(in crate::app) fn give_up_writes(&mut self) {
+        self.running.retain(|task| !task.key.is_write());
+    }
+
     /// The file of the film that is being made.
     pub fn film(&self) -> Option<&Path> {
         self.running.iter().find_map(|task| match &task.key {

@@ -24,7 +24,7 @@ impl State {
             self.apply(command, context);
         }
         self.poll_replays();
-        self.leave_if_saved(context);
+        self.leave_if_written(context);
         let Session { dialogs, tasks, .. } = &mut self.session;
         if let Some(dialog) = dialogs.import_mut() {
             dialog.update(self.view.units, tasks);

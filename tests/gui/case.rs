@@ -3,6 +3,7 @@
 mod chain;
 mod example;
 mod killed;
+mod leaving;
 mod names;
 mod notes;
 

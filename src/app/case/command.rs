@@ -62,6 +62,21 @@ pub enum Leaving {
     Open(PathBuf),
 }
 
+/// What the way to where the user goes waits for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LeavingStage {
+    /// For the user's answer, since something would be lost.
+    Asked {
+        /// Why something that was to be written first is in no file.
+        failures: Vec<String>,
+    },
+    /// For what is being written.
+    Written {
+        /// How many messages there were before.
+        n_messages: usize,
+    },
+}
+
 /// A case that was written.
 #[derive(Debug, Clone)]
 pub struct SavedCase {

@@ -2,12 +2,12 @@
 
 use egui::{Context, Ui, ViewportCommand};
 
-use crate::app::case::{CaseCommand, Leaving};
+use crate::app::case::{CaseCommand, Leaving, LeavingStage};
 use crate::app::command::Command;
 use crate::app::dialog::Dialog;
 use crate::app::state::{Session, State};
 use crate::app::tasks::TaskKey;
-use impactlab_core::data::Existing;
+use impactlab_core::data::{Existing, Severity};
 
 impl Leaving {
     /// What the button says that goes there without saving.
@@ -22,31 +22,43 @@ impl Leaving {
 }
 
 impl State {
-    /// Goes where the user wants, or asks first if something would be lost.
+    /// Goes where the user wants, or asks first if something would be lost. The window closes once what is
+    /// being written is in its file.
     pub(in crate::app) fn leave(&mut self, to: Leaving, context: &Context) {
-        let reasons = self.reasons_to_stay(&to);
-        if reasons.is_empty() {
+        if to == Leaving::Quit && self.session.tasks.has_writes() {
+            self.wait_for_writes(to);
+        } else if self.reasons_to_stay(&to).is_empty() {
             self.go(to, context);
         } else {
-            self.ask_before_leaving(to);
+            self.ask_before_leaving(to, Vec::new());
         }
     }
 
     /// Asks before something is lost.
-    pub(in crate::app) fn ask_before_leaving(&mut self, to: Leaving) {
-        self.session.dialogs.open(Dialog::Leave { to, once_saved: false });
+    fn ask_before_leaving(&mut self, to: Leaving, failures: Vec<String>) {
+        self.session.dialogs.open(Dialog::Leave { to, stage: LeavingStage::Asked { failures } });
+    }
+
+    /// Leaves once what is being written is in its file.
+    fn wait_for_writes(&mut self, to: Leaving) {
+        let stage = LeavingStage::Written { n_messages: self.session.log.len() };
+        self.session.dialogs.open(Dialog::Leave { to, stage });
     }
 
     /// Closes that question.
-    pub(in crate::app) fn stay(&mut self) {
+    fn stay(&mut self) {
         self.session.dialogs.close_if(|dialog| matches!(dialog, Dialog::Leave { .. }));
     }
 
-    /// Goes where the user wants.
+    /// Goes where the user wants. Who quits though the window waits for what is being written gives it up.
     pub(in crate::app) fn go(&mut self, to: Leaving, context: &Context) {
+        let is_given_up = self.waits_for_writes().is_some();
         self.stay();
         match to {
             Leaving::Quit => {
+                if is_given_up {
+                    self.session.tasks.give_up_writes();
+                }
                 self.session.may_close = true;
                 context.send_viewport_cmd(ViewportCommand::Close);
             }
@@ -123,9 +135,6 @@ impl State {
         if tasks.film().is_some() {
             reasons.push("A film that is being made is stopped and not written.".to_owned());
         }
-        if tasks.is_writing() || tasks.is_running(&TaskKey::SaveCase) {
-            reasons.push("A file is still being written; the window closes once it is.".to_owned());
-        }
         reasons
     }
 
@@ -141,29 +150,54 @@ impl State {
             _ => None,
         });
         if let Some(to) = open {
-            self.session.dialogs.open(Dialog::Leave { to, once_saved: true });
+            self.wait_for_writes(to);
         }
         self.save_case(path, Existing::Replace);
     }
 
-    /// Goes on where a case was to be saved first and now is.
-    pub(in crate::app) fn leave_if_saved(&mut self, context: &Context) {
-        if self.session.tasks.is_running(&TaskKey::SaveCase) {
+    /// Where the user goes once what is being written is in its file, with the number of messages there
+    /// were before.
+    fn waits_for_writes(&self) -> Option<(Leaving, usize)> {
+        self.session.dialogs.iter().find_map(|dialog| match dialog {
+            Dialog::Leave { to, stage: LeavingStage::Written { n_messages } } => {
+                Some((to.clone(), *n_messages))
+            }
+            _ => None,
+        })
+    }
+
+    /// Goes on where something was to be written first and now is. If it could not be written, the user is
+    /// asked.
+    pub(in crate::app) fn leave_if_written(&mut self, context: &Context) {
+        let Some((to, n_messages)) = self.waits_for_writes() else { return };
+        let tasks = &self.session.tasks;
+        let is_written = match to {
+            Leaving::Quit => !tasks.has_writes(),
+            _ => !tasks.is_running(&TaskKey::SaveCase),
+        };
+        if !is_written {
             return;
         }
-        let waiting = self.session.dialogs.iter().find_map(|dialog| match dialog {
-            Dialog::Leave { to, once_saved: true } => Some(to.clone()),
-            _ => None,
-        });
-        if let Some(to) = waiting {
-            self.stay();
-            self.leave(to, context);
+        self.stay();
+        let said = self.session.log.iter().skip(n_messages).map(|(_, message)| message);
+        let errors = said.filter(|message| message.severity == Severity::Error);
+        let failures: Vec<String> = errors.map(|message| message.text.clone()).collect();
+        match failures.is_empty() {
+            true => self.leave(to, context),
+            false => self.ask_before_leaving(to, failures),
         }
     }
 }
 
-/// Draws the question before the user leaves, and adds a command with the answer.
-pub fn leaving_ui(ui: &mut Ui, to: &Leaving, state: &State, commands: &mut Vec<Command>) {
+/// Draws the question before the user leaves, or what is waited for, and adds a command with the answer.
+///
+/// - `leaving`: where the user goes, and what that waits for.
+pub fn leaving_ui(
+    ui: &mut Ui,
+    (to, stage): (&Leaving, &LeavingStage),
+    state: &State,
+    commands: &mut Vec<Command>,
+) {
     ui.heading(match to {
         Leaving::Quit => "Quit impactlab?",
         Leaving::New
@@ -172,6 +206,29 @@ pub fn leaving_ui(ui: &mut Ui, to: &Leaving, state: &State, commands: &mut Vec<C
         | Leaving::Example
         | Leaving::Open(_) => "Leave this case?",
     });
+    let leave = Command::Case(CaseCommand::LeaveUnasked(to.clone()));
+    let failures = match stage {
+        LeavingStage::Asked { failures } => failures,
+        LeavingStage::Written { .. } => {
+            ui.label(match to {
+                Leaving::Quit => "A file is still being written; the window closes once it is.",
+                _ => "The case is being saved; the other one opens once it is.",
+            });
+            ui.separator();
+            ui.horizontal(|ui| {
+                if *to == Leaving::Quit && ui.button("Quit without waiting").clicked() {
+                    commands.push(leave);
+                }
+                if ui.button("Stay").clicked() {
+                    commands.push(Command::CloseDialog);
+                }
+            });
+            return;
+        }
+    };
+    for failure in failures {
+        ui.colored_label(ui.visuals().error_fg_color, failure);
+    }
     for reason in state.reasons_to_stay(to) {
         ui.label(reason);
     }
@@ -181,7 +238,7 @@ pub fn leaving_ui(ui: &mut Ui, to: &Leaving, state: &State, commands: &mut Vec<C
             commands.push(Command::Case(CaseCommand::SaveAndLeave));
         }
         if ui.button(to.label()).clicked() {
-            commands.push(Command::Case(CaseCommand::LeaveUnasked(to.clone())));
+            commands.push(leave);
         }
         if ui.button("Stay").clicked() {
             commands.push(Command::CloseDialog);

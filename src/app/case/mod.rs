@@ -9,7 +9,7 @@ mod update;
 mod version_1;
 
 pub use bar::case_bar_ui;
-pub use command::{CaseCommand, Leaving, VariantCommand};
+pub use command::{CaseCommand, Leaving, LeavingStage, VariantCommand};
 pub use known::KnownCase;
 pub use leaving::leaving_ui;
 pub use trust::{TrustedCase, trust_ui};

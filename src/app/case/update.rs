@@ -448,10 +448,7 @@ impl State {
                 self.remember_case(path);
                 self.say_unsaved_networks();
             }
-            Err(why) => {
-                self.stay();
-                self.say(Severity::Error, format!("the case was not saved: {why}"));
-            }
+            Err(why) => self.say(Severity::Error, format!("the case was not saved: {why}")),
         }
     }
 

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 use crate::app::archive::ModelsDialog;
-use crate::app::case::{Leaving, TrustedCase};
+use crate::app::case::{Leaving, LeavingStage, TrustedCase};
 use crate::app::crash_test::CrashTestForm;
 use crate::app::dialog::PathDialog;
 use crate::app::film::FilmForm;
@@ -27,8 +27,8 @@ pub enum Dialog {
     Leave {
         /// Where the user goes.
         to: Leaving,
-        /// Whether the user goes there as soon as the case is saved.
-        once_saved: bool,
+        /// What that still waits for.
+        stage: LeavingStage,
     },
     /// Whether a case may do more than read files in its own folder.
     Trust(Box<TrustedCase>),

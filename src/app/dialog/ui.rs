@@ -54,7 +54,7 @@ fn dialog_ui(ui: &mut Ui, dialog: &mut Dialog, state: &mut State, commands: &mut
         Dialog::Licences => licences_ui(ui, commands),
         Dialog::Messages => messages_ui(ui, state, commands),
         Dialog::Replace(output, path) => replace_ui(ui, (output, path), commands),
-        Dialog::Leave { to, .. } => leaving_ui(ui, to, state, commands),
+        Dialog::Leave { to, stage } => leaving_ui(ui, (to, stage), state, commands),
         Dialog::Trust(trusted) => trust_ui(ui, trusted, commands),
         Dialog::Unread(paths) => unread_ui(ui, paths, commands),
         Dialog::Path(dialog) => dialog.ui(ui, commands),

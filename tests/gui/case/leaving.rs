@@ -1,0 +1,59 @@
+//! Leaving a case that is still being written.
+
+use impactlab::app::{Dialog, LeavingStage};
+
+use super::*;
+
+fn is_waiting(dialog: &Dialog) -> bool {
+    matches!(dialog, Dialog::Leave { stage: LeavingStage::Written { .. }, .. })
+}
+
+/// The window with a case that is in its file, of which one variant more is being saved while the user
+/// quits.
+///
+/// - `prepare`: what happens before the save, to the folder of the case.
+fn quit_while_saving(path: &Path, prepare: impl FnOnce()) -> Harness<'static, App> {
+    let mut harness = pit();
+    save_as(&mut harness, path);
+    variant(&mut harness, VariantCommand::Duplicate);
+    prepare();
+    let context = harness.ctx.clone();
+    let app = harness.state_mut();
+    app.apply(Command::Case(CaseCommand::Save), &context);
+    app.apply(Command::Case(CaseCommand::Leave(Leaving::Quit)), &context);
+    assert!(!app.state().session.may_close && app.state().session.dialogs.is_any_open());
+    step_until(&mut harness, "the end of the save", |state| {
+        !state.session.dialogs.iter().any(is_waiting)
+    });
+    harness
+}
+
+#[test]
+fn a_window_that_is_closed_during_a_save_closes_after_it_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pit.impactlab");
+    let mut harness = quit_while_saving(&path, || {});
+    step_until(&mut harness, "the end", |state| state.session.may_close);
+    assert!(!state(&harness).session.dialogs.is_any_open());
+    assert_eq!(CaseFile::load(&path).expect("a case").variants.len(), 2);
+}
+
+/// The window ended, and nobody was told.
+#[test]
+fn a_save_that_fails_at_quit_keeps_the_window_open_and_says_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let inside = folder.path().join("inside");
+    fs::create_dir(&inside).expect("a folder");
+    let path = inside.join("pit.impactlab");
+    let gone = || fs::remove_dir_all(&inside).expect("removed");
+    let mut harness = quit_while_saving(&path, gone);
+    assert!(!state(&harness).session.may_close);
+    harness.get_by_label("Quit impactlab?");
+    harness.get_by_label("The case \"pit\" has changes that are not in its file.");
+    let why = state(&harness).session.messages.last().expect("a message").text.clone();
+    assert!(why.starts_with("the case was not saved: "), "{why}");
+    harness.get_by_label(&why);
+    harness.get_by_label("Quit").click();
+    harness.run_steps(3);
+    assert!(state(&harness).session.may_close);
+}
