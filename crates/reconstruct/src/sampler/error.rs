@@ -27,6 +27,15 @@ pub enum SamplerError {
         /// Number of draws.
         n_evaluations: usize,
     },
+    /// Somebody stopped the run before a particle of the prior could explain the evidence, which says nothing
+    /// of the evidence.
+    #[error(
+        "stopped after {n_evaluations} draws from the prior, of which none can explain the evidence"
+    )]
+    Stopped {
+        /// Number of draws.
+        n_evaluations: usize,
+    },
     /// The likelihood has returned another number of values than there were particles.
     #[error("the likelihood returned {got} values, expected {expected}, one for each particle")]
     WrongCount {
@@ -63,6 +72,11 @@ impl SamplerError {
     /// Whether the checkpoint is at fault, and not what is sampled.
     pub fn is_of_checkpoint(&self) -> bool {
         matches!(self, Self::OtherRun { .. } | Self::Checkpoint { .. } | Self::File(_))
+    }
+
+    /// Whether somebody stopped the run, and nothing is wrong.
+    pub fn is_of_stop(&self) -> bool {
+        matches!(self, Self::Stopped { .. })
     }
 
     /// Whether another run, here or in another process, is writing the checkpoint.

@@ -91,9 +91,9 @@ const SAVED_GROWTH: f64 = 1.3;
 ///   posterior of which it has hardly a draw returns a weakened one ([`Particles::is_weakened`]).
 ///
 /// # Errors
-/// [`SamplerError`] if a setting is outside its range, if the evidence is impossible everywhere, or
-/// if the checkpoint is of another run, is damaged, cannot be read or written, or belongs to another
-/// process.
+/// [`SamplerError`] if a setting is outside its range, if the evidence is impossible everywhere or for all
+/// that was drawn before the sampler was stopped, or if the checkpoint is of another run, is damaged, cannot
+/// be read or written, or belongs to another process.
 pub fn sample(
     target: &(impl Target + ?Sized),
     settings: &SamplerSettings,
@@ -195,8 +195,8 @@ impl<T: Target + ?Sized> Run<'_, T> {
         Ok((likelihood, passed >= short))
     }
 
-    /// Evaluates particles of the prior, and reports them. A run that is stopped has an answer as soon as the
-    /// evidence is possible for one particle: then the ones that were not evaluated are dropped.
+    /// Evaluates particles of the prior, and reports them. Those that were not evaluated when the run is
+    /// stopped are dropped.
     ///
     /// - `n_drawn`: how many were drawn before.
     fn evaluate_prior(
@@ -204,17 +204,15 @@ impl<T: Target + ?Sized> Run<'_, T> {
         z: &mut Vec<Vec<f64>>,
         n_drawn: usize,
     ) -> Result<(Vec<Likelihood>, ControlFlow<()>), SamplerError> {
-        let mut is_possible = self.population.is_possible();
         let mut likelihood = Vec::with_capacity(z.len());
         let mut log_likelihood = Vec::with_capacity(z.len());
         let mut flow = ControlFlow::Continue(());
-        while likelihood.len() < z.len() && (flow.is_continue() || !is_possible) {
+        while likelihood.len() < z.len() && flow.is_continue() {
             let (some, is_slow) = self.evaluate_some(&z[likelihood.len()..])?;
             log_likelihood.extend(some.iter().map(|of| of.log));
             likelihood.extend(some);
-            is_possible |= log_likelihood.iter().any(|value: &f64| value.is_finite());
             let n = likelihood.len();
-            if flow.is_continue() && (is_slow || n == z.len()) {
+            if is_slow || n == z.len() {
                 flow = (self.report)(SamplerReport {
                     stage: SamplerStage::Prior,
                     temperature: 0.0,
@@ -256,7 +254,10 @@ impl<T: Target + ?Sized> Run<'_, T> {
             self.population.add_prior(z, likelihood);
         }
         if !self.population.is_possible() {
-            return Err(SamplerError::ImpossibleEverywhere { n_evaluations: n_drawn });
+            return Err(match flow.is_break() {
+                true => SamplerError::Stopped { n_evaluations: n_drawn },
+                false => SamplerError::ImpossibleEverywhere { n_evaluations: n_drawn },
+            });
         }
         Ok(flow)
     }

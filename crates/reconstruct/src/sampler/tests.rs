@@ -248,7 +248,9 @@ fn what_was_sampled_until_a_cancellation_is_kept_and_said_to_be_no_posterior() {
 }
 
 /// A target of which some particles at once take a third of a second.
-struct Slow;
+struct Slow {
+    is_possible: bool,
+}
 
 impl Target for Slow {
     fn dim(&self) -> usize {
@@ -257,7 +259,11 @@ impl Target for Slow {
 
     fn log_likelihoods(&self, z: &[Vec<f64>]) -> Vec<f64> {
         std::thread::sleep(std::time::Duration::from_millis(300));
-        z.iter().map(|z| normal(z[0], 1.0, 0.5)).collect()
+        let log = match self.is_possible {
+            true => 0.0,
+            false => f64::NEG_INFINITY,
+        };
+        z.iter().map(|z| log + normal(z[0], 1.0, 0.5)).collect()
     }
 }
 
@@ -266,9 +272,18 @@ impl Target for Slow {
 #[test]
 fn a_run_of_slow_motions_stops_within_a_batch() {
     let stop = &mut |_: SamplerReport<'_>| ControlFlow::Break(());
-    let stopped = sample(&Slow, &seed(1), None, stop).unwrap();
+    let stopped = sample(&Slow { is_possible: true }, &seed(1), None, stop).unwrap();
     assert!(stopped.is_stopped && stopped.n_evaluations < 100, "{}", stopped.n_evaluations);
     assert_eq!(stopped.z.len(), 2000);
+}
+
+/// It went on to the end of the batch, and then the evidence was said to be impossible.
+#[test]
+fn a_run_that_is_stopped_before_a_motion_explains_the_evidence_stops_at_once() {
+    let stop = &mut |_: SamplerReport<'_>| ControlFlow::Break(());
+    let stopped = sample(&Slow { is_possible: false }, &seed(1), None, stop);
+    let Err(SamplerError::Stopped { n_evaluations }) = stopped else { panic!("{stopped:?}") };
+    assert!(n_evaluations < 100, "{n_evaluations}");
 }
 
 #[test]

@@ -399,6 +399,20 @@ impl Question for ReconstructRequest {
         _library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
+        match self.reconstructed(observer) {
+            Err(StudyError::Reconstruction { source, .. }) if source.is_of_stop() => {
+                Ok(Outcome::Cancelled)
+            }
+            answered => answered,
+        }
+    }
+}
+
+impl ReconstructRequest {
+    fn reconstructed(
+        &self,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
         let evidence = self.evidence.load()?;
         let model = self.model(&evidence)?;
         let cars = model.cars();
