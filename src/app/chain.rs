@@ -75,7 +75,9 @@ impl State {
         let units = self.view.units;
         Link {
             title: "Impact",
-            figure: delta_v.map(|m_s| format!("Δv {}", Quantity::Speed.shown(m_s, units))),
+            figure: delta_v.map(|m_s| {
+                format!("Δv {}", NumberFormat::english(units).rough(Quantity::Speed, m_s))
+            }),
             source: source.to_owned(),
             warnings: warnings(report.map(|report| &report.caveats), units),
             is_late: false,

@@ -30,7 +30,7 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
     let delta_v_m_s =
         state(&harness).session.impact.ok().unwrap().report.struck.delta_v_magnitude_m_s;
-    let delta_v = Quantity::Speed.shown(delta_v_m_s, UnitSystem::Si);
+    let delta_v = format.rough(Quantity::Speed, delta_v_m_s);
     assert_eq!(chain[1].figure, Some(format!("Δv {delta_v}")));
     assert!(!chain[1].warnings.iter().any(|warning| warning.contains("second contact")));
 

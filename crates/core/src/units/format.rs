@@ -20,9 +20,9 @@ pub enum Language {
 /// The digits of a number follow its uncertainty:
 ///
 /// - with an interval, two digits of the width of that ([`NumberFormat::estimate`]);
-/// - of draws without an interval, and of a single motion, two significant digits, but all of a place or a
-///   heading before the decimal point, which is no better known near zero than far from it
-///   ([`NumberFormat::rough`]);
+/// - of draws without an interval, of a single motion, and of an impact beside which the force network
+///   has intervals, two significant digits, but all of a place or a heading before the decimal point,
+///   which is no better known near zero than far from it ([`NumberFormat::rough`]);
 /// - of anything else, four significant digits ([`NumberFormat::value`]).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NumberFormat {

@@ -163,7 +163,7 @@ impl PredictMotionReport {
         };
         let momentum = self.implied_contact.as_ref().map(|implied| {
             let impulse_n_s = implied.momentum.impulse_n_s;
-            Fact::vector(Term::MomentumBeside, Quantity::Impulse, impulse_n_s)
+            Fact::rough_vector(Term::MomentumBeside, Quantity::Impulse, impulse_n_s)
         });
         let by_law = vec![
             Fact::new(Term::MovedFirstBy, Value::Term(self.without_network())),

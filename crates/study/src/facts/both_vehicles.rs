@@ -116,17 +116,17 @@ pub(super) fn phase_table(phases: &[ContactPhaseReport]) -> Option<FactTable> {
     let columns: Vec<Term> = PHASE_COLUMNS.into_iter().take(n_columns).collect();
     let row = |(number, phase): (usize, &ContactPhaseReport)| {
         let duration = match phase.end_s {
-            Some(end_s) => Value::Number(Quantity::Time, end_s - phase.start_s),
+            Some(end_s) => Value::Rough(Quantity::Time, end_s - phase.start_s),
             None => Value::Term(Term::ToTheEnd),
         };
         let [x, y] = phase.impulse_n_s;
         let of_vehicle = |it: &PhaseOfVehicleReport| {
-            [Value::Number(Quantity::Speed, it.delta_v_m_s), pdof_value(it.pdof_rad)]
+            [Value::Rough(Quantity::Speed, it.delta_v_m_s), pdof_value(it.pdof_rad)]
         };
         let mut values = vec![
-            Value::Number(Quantity::Time, phase.start_s),
+            Value::Rough(Quantity::Time, phase.start_s),
             duration,
-            Value::Number(Quantity::Impulse, x.hypot(y)),
+            Value::Rough(Quantity::Impulse, x.hypot(y)),
         ];
         values.extend(of_vehicle(&phase.struck));
         values.extend(of_vehicle(&phase.striking));
@@ -206,6 +206,8 @@ mod tests {
         let [wall, car] = [told(of(2.2e-4, 270.0)), told(of(11.0, 180.2))];
         assert_eq!((wall.header.len(), wall.rows[0].cells.len()), (6, 6), "{:?}", wall.header);
         assert_eq!(wall.rows[0].cells[5], "0 deg");
+        // A single motion knows a phase no better than the median of many.
+        assert_eq!(wall.rows[0].cells[2..5], ["0.10 s", "22 kN s", "58 km/h"]);
         assert_eq!((car.header.len(), &*car.rows[0].cells[7]), (8, "180 deg"));
     }
 }

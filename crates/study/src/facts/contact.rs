@@ -37,7 +37,7 @@ impl ImpliedContactReport {
         [
             Fact::estimate(Term::ImpliedRestitution, Quantity::Ratio, &self.restitution),
             Fact::estimate(Term::ImpliedRatio, Quantity::Ratio, &self.impulse_ratio),
-            Fact::vector(Term::MomentumBeside, Quantity::Impulse, momentum.impulse_n_s),
+            Fact::rough_vector(Term::MomentumBeside, Quantity::Impulse, momentum.impulse_n_s),
             Fact::new(Term::MomentumSurface, momentum.surface()),
         ]
     }

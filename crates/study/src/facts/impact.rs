@@ -23,7 +23,8 @@ impl ImpactReport {
 
     /// The solution alone: the contact, and both vehicles after it.
     pub fn solution_tables(&self) -> [FactTable; 2] {
-        let [struck, striking] = [self.struck.values(), self.striking.values()];
+        let is_rough = self.is_rough();
+        let [struck, striking] = [&self.struck, &self.striking].map(|body| body.values(is_rough));
         let terms = [
             Term::DeltaV,
             Term::VelocityAfter,
@@ -45,6 +46,12 @@ impl ImpactReport {
         let rows = both.map(row).collect();
         let vehicles = FactTable::new(title, rows).with_columns(columns);
         [FactTable::new(Term::Impact, self.contact()), vehicles]
+    }
+
+    /// Whether what the impact brings about has two digits: beside it stand the intervals of the same impulse,
+    /// which make no more of them known.
+    fn is_rough(&self) -> bool {
+        self.rival.is_some()
     }
 
     /// The contact and what it brings about.
@@ -88,13 +95,20 @@ impl ImpactReport {
         facts.extend(self.overlap_m.map(overlap));
         let closing = ["normal", "tangential"];
         let closing = Value::Vector(Quantity::Speed, self.closing_velocity_m_s, closing);
+        let impulse = |si| number(self.is_rough(), Quantity::Impulse, si);
         facts.extend([
             Fact::new(Term::Regime, phrase(self.regime.label().to_owned())),
             Fact::new(Term::ClosingVelocity, closing),
-            Fact::vector(Term::ImpulseOnStruck, Quantity::Impulse, self.impulse_n_s),
-            Fact::number(Term::ImpulseNormal, Quantity::Impulse, self.impulse_normal_n_s),
-            Fact::number(Term::ImpulseTangential, Quantity::Impulse, self.impulse_tangential_n_s),
-            Fact::number(Term::EnergyLoss, Quantity::Energy, self.dissipated_energy_j),
+            Fact::new(
+                Term::ImpulseOnStruck,
+                vector(self.is_rough(), Quantity::Impulse, self.impulse_n_s),
+            ),
+            Fact::new(Term::ImpulseNormal, impulse(self.impulse_normal_n_s)),
+            Fact::new(Term::ImpulseTangential, impulse(self.impulse_tangential_n_s)),
+            Fact::new(
+                Term::EnergyLoss,
+                number(self.is_rough(), Quantity::Energy, self.dissipated_energy_j),
+            ),
         ]);
         facts.extend(self.skids.iter().map(SkidReport::fact));
         facts
@@ -123,6 +137,22 @@ fn overlap(overlap_m: f64) -> Fact {
     }
 }
 
+/// A number without an interval, roughly if its uncertainty is known from elsewhere.
+fn number(is_rough: bool, quantity: Quantity, value_si: f64) -> Value {
+    match is_rough {
+        true => Value::Rough(quantity, value_si),
+        false => Value::Number(quantity, value_si),
+    }
+}
+
+/// The same of a vector.
+fn vector(is_rough: bool, quantity: Quantity, components_si: [f64; 2]) -> Value {
+    match is_rough {
+        true => Value::RoughVector(quantity, components_si, ["x", "y"]),
+        false => Value::Vector(quantity, components_si, ["x", "y"]),
+    }
+}
+
 /// A principal direction of force that has no interval, four digits.
 pub(super) fn pdof_value(pdof_deg: f64) -> Value {
     let pdof = PrincipalDirectionOfForce::from_angle(pdof_deg.to_radians());
@@ -131,15 +161,19 @@ pub(super) fn pdof_value(pdof_deg: f64) -> Value {
 
 impl BodyReport {
     /// Change of velocity, velocity, yaw rate, its change and the direction of force.
-    fn values(&self) -> [Value; 6] {
-        let velocity = |value| Value::Vector(Quantity::Speed, value, ["x", "y"]);
+    fn values(&self, is_rough: bool) -> [Value; 6] {
+        let velocity = |value| vector(is_rough, Quantity::Speed, value);
+        let yaw_rate = |value| number(is_rough, Quantity::AngularVelocity, value);
         let none = Value::Term(Term::None);
-        let pdof = self.pdof_deg.map(pdof_value);
+        let pdof = self.pdof_deg.map(|deg| match pdof_value(deg) {
+            Value::Number(quantity, value_si) => number(is_rough, quantity, value_si),
+            value => value,
+        });
         [
             velocity(self.delta_v_m_s),
             velocity(self.velocity_m_s),
-            Value::Number(Quantity::AngularVelocity, self.yaw_rate_rad_s),
-            Value::Number(Quantity::AngularVelocity, self.delta_yaw_rate_rad_s),
+            yaw_rate(self.yaw_rate_rad_s),
+            yaw_rate(self.delta_yaw_rate_rad_s),
             pdof.unwrap_or_else(|| none.clone()),
             self.pdof_clock.map_or(none, Value::Clock),
         ]

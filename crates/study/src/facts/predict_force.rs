@@ -53,7 +53,7 @@ impl PredictForceReport {
             Some(implied) => facts.extend(implied.facts()),
             None => {
                 let start = self.momentum_impulse_n_s;
-                facts.push(Fact::vector(Term::NetworkStart, Quantity::Impulse, start));
+                facts.push(Fact::rough_vector(Term::NetworkStart, Quantity::Impulse, start));
             }
         }
         let open = [

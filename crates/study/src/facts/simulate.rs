@@ -45,7 +45,7 @@ impl SimulateReport {
         facts.extend(slope_facts(self.slope));
         facts.extend(self.skids.iter().map(SkidReport::fact));
         facts.extend(zones(&self.friction_zones));
-        facts.extend(self.force.iter().flat_map(ForceReport::facts));
+        facts.extend(self.force.iter().flat_map(|force| force.facts(self.momentum.is_some())));
         let surface = self.momentum.as_ref().map(|momentum| momentum.surface());
         facts.extend(surface.map(|surface| Fact::new(Term::MomentumSurface, surface)));
         let delta_v = self.delta_v_m_s;
@@ -130,21 +130,31 @@ fn slope_facts(slope: Option<RoadSlope>) -> impl Iterator<Item = Fact> {
 }
 
 impl ForceReport {
-    fn facts(&self) -> Vec<Fact> {
+    /// - `is_rough`: whether it is the pulse of an impulse solution, which nobody has measured.
+    fn facts(&self, is_rough: bool) -> Vec<Fact> {
         let words = |text: &str| Value::Phrase(text.replace('_', " "));
         let file = self.path.clone().map(|path| Fact::new(Term::ForceFile, Value::File(path)));
         let contact = self.contact_start_s.zip(self.contact_end_s).map(|(from_s, to_s)| {
             let ends = [from_s, to_s].map(|s| Value::Rounded(Quantity::Time, s));
             Fact::new(Term::Contact, Value::span(ends))
         });
+        let (impulse, peak) = (Term::ImpulseOnStruck, Term::PeakForce);
+        let size = match is_rough {
+            true => [
+                Fact::rough_vector(impulse, Quantity::Impulse, self.impulse_n_s),
+                Fact::rough(peak, Quantity::Force, self.peak_n),
+            ],
+            false => [
+                Fact::vector(impulse, Quantity::Impulse, self.impulse_n_s),
+                Fact::number(peak, Quantity::Force, self.peak_n),
+            ],
+        };
         let facts = [
             Fact::new(Term::ForceAxes, words(&self.axes)),
             Fact::new(Term::ForceSampling, words(&self.sampling)),
             Fact::new(Term::YawMoment, words(self.yaw_moment)),
-            Fact::vector(Term::ImpulseOnStruck, Quantity::Impulse, self.impulse_n_s),
-            Fact::number(Term::PeakForce, Quantity::Force, self.peak_n),
         ];
-        file.into_iter().chain(facts).chain(contact).collect()
+        file.into_iter().chain(facts).chain(size).chain(contact).collect()
     }
 }
 
