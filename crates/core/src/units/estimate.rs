@@ -97,6 +97,12 @@ impl Estimate {
         self.interval(0.9).unwrap_or([f64::NAN; 2])
     }
 
+    /// Whether something is known of how sure it is. Draws that are all alike, such as a single one, leave
+    /// intervals without width, which tell nothing.
+    pub fn has_interval(&self) -> bool {
+        self.intervals.iter().any(|interval| interval.width() > 0.0)
+    }
+
     /// The median alone.
     #[must_use]
     pub fn without_intervals(&self) -> Self {

@@ -268,9 +268,9 @@ impl NumberFormat {
     /// The same of what is computed with draws: where an interval cannot be told, the median is as
     /// [`NumberFormat::rough`] writes it.
     pub fn drawn_in_words(&self, quantity: Quantity, estimate: &Estimate) -> String {
-        match estimate.intervals.is_empty() {
-            true => self.rough(quantity, estimate.median),
-            false => self.estimate_in_words(quantity, estimate),
+        match estimate.has_interval() {
+            true => self.estimate_in_words(quantity, estimate),
+            false => self.rough(quantity, estimate.median),
         }
     }
 

@@ -13,6 +13,15 @@ const MOST_CHANCE: f64 = 0.1;
 /// The error of an end is found from the draws themselves, and of a handful it is far too small; of one
 /// there is none.
 pub(crate) fn few_draws(n_draws: usize, error: Option<&MonteCarloError>) -> Option<Caveat> {
+    if n_draws == 1 {
+        let text = Phrase::new(
+            "there is a single draw, which has no interval and no probability: it is one of the motions that \
+             are possible, and says nothing of the others",
+            "Es gibt nur eine Ziehung, die weder ein Intervall noch eine Wahrscheinlichkeit hat: Sie ist eine \
+             der möglichen Bewegungen und sagt nichts über die anderen",
+        );
+        return Some(Caveat::new(CaveatKind::FewDraws, text));
+    }
     if n_draws < FEWEST_DRAWS {
         let text = Phrase::new(
             "the draws are {0}, too few for an interval of 90 %, beyond each end of which one of {1} lies: \
@@ -67,6 +76,8 @@ mod tests {
             assert_eq!(kind(n, None), Some(CaveatKind::FewDraws), "{n}");
             assert_eq!(kind(n, Some(&error(0.01))), Some(CaveatKind::FewDraws), "{n}");
         }
+        let one = few_draws(1, None).unwrap().text;
+        assert!(one.contains("has no interval and no probability"), "{one}");
         assert_eq!(kind(20, Some(&error(0.01))), None);
         assert_eq!(kind(20, Some(&error(0.2))), Some(CaveatKind::FewDraws));
         assert_eq!(kind(200, None), None);

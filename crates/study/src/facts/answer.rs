@@ -1,7 +1,6 @@
 //! The numbers of the answer to a forecast in one table: does it spin, where does it stop, does it come into
 //! another lane, do the methods agree, and what does it hinge on?
 
-use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 
 use crate::analysis::{FEWEST_DRAWS, MotionOutcome, PlaceChance, RestOutcome, Sensitivity};
@@ -80,7 +79,7 @@ impl PredictMotionReport {
     /// Probability over the draws of both vehicles.
     pub(super) fn place_chance(&self, share: f64) -> Value {
         let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
-        Value::Chance(share, Some(share_standard_error(share, n_draws as f64)))
+        Value::chance_of_draws(share, n_draws)
     }
 
     /// The likeliest lanes, kerbs and zones that the struck and the striking vehicle come over and were not

@@ -1,7 +1,6 @@
 //! The facts of two vehicles that were followed through all contacts.
 
 use impactlab_core::collision::PrincipalDirectionOfForce;
-use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 use impactlab_networks::pair::{Course, CourseShare};
 
@@ -47,16 +46,13 @@ impl From<Course> for Term {
 ///
 /// - `n_draws`: of which these are shares.
 pub(super) fn course_table(courses: &[CourseShare], n_draws: usize) -> Option<FactTable> {
-    let row =
-        |share: &CourseShare| Fact::new(share.course.into(), chance(share.probability, n_draws));
+    let row = |share: &CourseShare| {
+        Fact::new(share.course.into(), Value::chance_of_draws(share.probability, n_draws))
+    };
     FactTable::new(Term::StruckCourses, courses.iter().map(row).collect())
         .with_rows(Term::Course)
         .with_columns(&[Term::Probability])
         .unless_empty()
-}
-
-fn chance(share: f64, n_draws: usize) -> Value {
-    Value::Chance(share, Some(share_standard_error(share, n_draws as f64)))
 }
 
 impl ContactsOutcome {
@@ -69,10 +65,16 @@ impl ContactsOutcome {
         let n_law = self.n_draws.saturating_sub(self.n_known_forces);
         let mut facts = vec![
             Fact::new(Term::FirstByLaw, Value::CountOf(n_law, self.n_draws)),
-            Fact::new(Term::LongContact, chance(self.long_contact_probability, self.n_draws)),
-            Fact::new(Term::MeetAgain, chance(self.meet_again_probability, self.n_draws)),
-            Fact::estimate(Term::TimeInContact, Quantity::Time, &self.duration_s),
-            Fact::estimate(Term::TotalImpulse, Quantity::Impulse, &self.impulse_n_s),
+            Fact::new(
+                Term::LongContact,
+                Value::chance_of_draws(self.long_contact_probability, self.n_draws),
+            ),
+            Fact::new(
+                Term::MeetAgain,
+                Value::chance_of_draws(self.meet_again_probability, self.n_draws),
+            ),
+            Fact::drawn(Term::TimeInContact, Quantity::Time, &self.duration_s),
+            Fact::drawn(Term::TotalImpulse, Quantity::Impulse, &self.impulse_n_s),
         ];
         let later = self.later_impulse_share.as_ref();
         facts.extend(later.map(|share| Fact::drawn(Term::LaterShare, Quantity::Ratio, share)));
@@ -93,7 +95,7 @@ impl ContactsOutcome {
                 [median(Quantity::Speed, &it.delta_v_m_s), pdof_value(pdof)]
             };
             let mut values = vec![
-                chance(phase.probability, self.n_draws),
+                Value::chance_of_draws(phase.probability, self.n_draws),
                 median(Quantity::Time, &phase.start_s),
                 median(Quantity::Time, &phase.duration_s),
                 median(Quantity::Impulse, &phase.impulse_n_s),

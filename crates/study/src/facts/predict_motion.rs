@@ -1,6 +1,5 @@
 //! The facts of a predicted motion.
 
-use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 use impactlab_networks::response::LEAST_MOTIONS;
 
@@ -56,8 +55,7 @@ impl PredictMotionReport {
     /// Which lanes, kerbs and zones of the site the vehicles come to; likewise, and none without a site.
     pub fn places_table(&self) -> Option<FactTable> {
         let n_draws = self.contacts.as_ref().map_or(0, |contacts| contacts.n_draws);
-        let chance =
-            |share: f64| Value::Chance(share, Some(share_standard_error(share, n_draws as f64)));
+        let chance = |share: f64| Value::chance_of_draws(share, n_draws);
         let row = |place: &PlaceChance| {
             let shares = [
                 place.struck_enters,
@@ -172,7 +170,7 @@ impl PredictMotionReport {
             (None, Some(n_drawn)) => n_drawn,
             (None, None) => LEAST_MOTIONS,
         };
-        Value::Chance(chance, Some(share_standard_error(chance, n as f64)))
+        Value::chance_of_draws(chance, n)
     }
 
     /// How many forces or vehicles were drawn, whichever are fewer; none where there is one of each.
@@ -245,6 +243,7 @@ impl PredictMotionReport {
 mod tests {
     use super::*;
     use crate::facts::answer::tests::forecast;
+    use impactlab_core::numerics::share_standard_error;
 
     #[test]
     fn many_vehicles_under_few_forces_do_not_make_a_chance_surer() {

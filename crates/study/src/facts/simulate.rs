@@ -1,6 +1,5 @@
 //! The facts of the simulation of one vehicle.
 
-use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, Quantity};
 use impactlab_core::vehicle::{Integrator, RoadSlope};
 
@@ -202,8 +201,8 @@ impl VehicleUncertainty {
         facts.extend(self.rest.iter().flat_map(|rest| rest.facts(is_known)));
         let error = self.monte_carlo.iter().filter(|_| is_known);
         facts.extend(error.flat_map(MonteCarloError::facts));
-        let n = self.n_draws.saturating_sub(self.n_failed) as f64;
-        let chance = |chance| Value::Chance(chance, Some(share_standard_error(chance, n)));
+        let n = self.n_draws.saturating_sub(self.n_failed);
+        let chance = |chance| Value::chance_of_draws(chance, n);
         let second = self.second_contact_probability.map(chance);
         facts.extend(second.map(|chance| Fact::new(Term::SecondContact, chance)));
         FactTable::new(Term::Draws, facts).with_levels(PREDICTED)

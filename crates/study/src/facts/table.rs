@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use impactlab_core::numerics::share_standard_error;
 use impactlab_core::units::{Estimate, IntervalText, Quantity};
 
 use crate::facts::{FactWriter, Term};
@@ -199,9 +200,18 @@ impl Value {
 
     /// A median of draws with its intervals; rough where these cannot be told.
     pub(super) fn drawn(quantity: Quantity, estimate: &Estimate) -> Self {
-        match estimate.intervals.is_empty() {
-            true => Self::Rough(quantity, estimate.median),
-            false => Self::Estimate(quantity, estimate.clone()),
+        match estimate.has_interval() {
+            true => Self::Estimate(quantity, estimate.clone()),
+            false => Self::Rough(quantity, estimate.median),
+        }
+    }
+
+    /// A probability by the share of some draws, with its standard error; of a single draw, which has none,
+    /// what it did.
+    pub(super) fn chance_of_draws(share: f64, n_draws: usize) -> Self {
+        match n_draws {
+            1 => Self::ShareOfDraws(share, n_draws),
+            n => Self::Chance(share, Some(share_standard_error(share, n as f64))),
         }
     }
 

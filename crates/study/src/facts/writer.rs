@@ -68,6 +68,10 @@ impl FactWriter<'_> {
             },
             Value::Share(share) => format.percent(*share),
             Value::Chance(chance, error) => format.chance(*chance, *error),
+            Value::ShareOfDraws(share, 1) => match format.language {
+                Language::En => format!("{share:.0} of 1 draw"),
+                Language::De => format!("{share:.0} von 1 Ziehung"),
+            },
             Value::ShareOfDraws(share, n) => match format.language {
                 Language::En => format!("{} of {n} draws", format.percent(*share)),
                 Language::De => format!("{} von {n} Ziehungen", format.percent(*share)),
@@ -162,6 +166,17 @@ mod tests {
         assert_eq!(text(Value::ProbabilityBound(1.0)), "≤ 1");
         assert_eq!(text(Value::ProbabilityBound(0.704)), "≤ 0.704");
         assert_eq!(text(Value::ProbabilityBound(1e-5)), "< 0.001");
+    }
+
+    /// “100.0 % ± 22.0 %” was the probability by one draw, and its place “43.98 (43.98 to 43.98) m”.
+    #[test]
+    fn a_single_draw_has_neither_an_interval_nor_a_probability() {
+        let writer = FactWriter::english(UnitSystem::Si);
+        let place = Value::drawn(Quantity::Length, &Estimate::from_draws(vec![43.98]));
+        assert_eq!(writer.value(&place), "44 m");
+        assert_eq!(writer.value(&Value::chance_of_draws(1.0, 1)), "1 of 1 draw");
+        assert_eq!(writer.value(&Value::chance_of_draws(0.0, 1)), "0 of 1 draw");
+        assert_eq!(writer.value(&Value::chance_of_draws(1.0, 100)), "100.0 % ± 1.4 %");
     }
 
     #[test]
