@@ -9,9 +9,12 @@ use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
     Block, Language, Paper, ReportDocument, SectionKind, Table, pdf, report_case,
 };
+use impactlab_reconstruct::evidence::Stated;
+use impactlab_reconstruct::hand::HandMethod;
 use impactlab_study::case_file::{CaseFile, Expert, Variant};
 use impactlab_study::{
-    EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Request, ScenarioChoice,
+    EvidenceChoice, HandRequest, ImpactRequest, Library, ReconstructRequest, Request,
+    ScenarioChoice,
 };
 
 use crate::report::{english, impact_case, pit, report, settings, staged};
@@ -156,6 +159,38 @@ fn each_course_of_events_has_its_probability_and_its_speed_in_the_opinion() {
         let is_told = row[1].contains(" ± ") && row[1].contains("; speed of the struck car: ");
         assert!(is_told, "{row:?}");
     }
+}
+
+/// A calculation by hand: what vehicle 1 had before it struck one at rest, of 1500 and 1200 kg.
+fn by_hand() -> CaseFile {
+    let stated = |value, sigma| Stated { value: Some(value), sigma: Some(sigma) };
+    let inputs = [
+        ("mass_1_kg", stated(1500.0, 30.0)),
+        ("mass_2_kg", stated(1200.0, 30.0)),
+        ("speed_after_1_m_s", stated(8.0, 1.0)),
+        ("speed_after_2_m_s", stated(9.0, 1.0)),
+        ("speed_2_m_s", stated(0.0, 0.0)),
+    ];
+    let inputs = inputs.map(|(key, stated)| (key.to_owned(), stated)).into_iter().collect();
+    let asked = HandRequest { inputs, ..HandRequest::new(HandMethod::MomentumInLine) };
+    let questions = vec![asked.into()];
+    let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
+    CaseFile::new("hand", variant)
+}
+
+/// The opinion named a table of section 1, and section 8 said that no answer depends on anything.
+#[test]
+fn what_moves_a_calculation_by_hand_stands_where_the_opinion_says() {
+    let (document, _) = report(&by_hand(), &english());
+    assert!(says(&document, "stands in section 8"));
+    let section = document.section(SectionKind::Sensitivity).expect("a section");
+    assert!(section.title.starts_with("8 "), "{}", section.title);
+    let tables = section.blocks.iter().filter_map(|block| match block {
+        Block::Table(table) => Some(table),
+        _ => None,
+    });
+    let names: Vec<&str> = tables.flat_map(|table| &table.rows).map(|row| &*row[0]).collect();
+    assert!(names.contains(&"mass of vehicle 1 + 30 kg"), "{names:?}");
 }
 
 /// Readers by ear get the file that they need: PDF/UA-1, with a title and headers of rows.

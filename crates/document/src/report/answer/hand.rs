@@ -21,8 +21,7 @@ pub(super) fn part(answer: &Answer<HandReport>, context: Context<'_>) -> Part {
         Block::paragraph(format!("{}; {holds}.", answer.equation)),
     ];
     blocks.extend(facts_with_meaning(&answer.result_table(), words.meaning_hand, context));
-    let beside = [answer.sensitivity_table(), answer.bias_table()];
-    blocks.extend(beside.iter().flatten().map(|table| facts_table(table, context)));
+    blocks.extend(answer.bias_table().iter().map(|table| facts_table(table, context)));
     blocks.extend(answer.sources.iter().map(|text| Block::paragraph(citation(text, wording))));
     let points = (answer.n_points > 0).then(|| InputRow {
         group: name.clone(),
@@ -55,6 +54,11 @@ pub(super) fn part(answer: &Answer<HandReport>, context: Context<'_>) -> Part {
         answer: blocks,
         inputs: answer.inputs.iter().map(input).chain(points).collect(),
         caveats: answer.caveats.clone(),
+        sensitivity: answer
+            .sensitivity_table()
+            .iter()
+            .map(|table| facts_table(table, context))
+            .collect(),
         provenance: provenance_of(&answer.provenance, &[], wording),
         ..Part::default()
     }

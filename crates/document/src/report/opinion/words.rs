@@ -165,7 +165,7 @@ const EN: OpinionWords = OpinionWords {
     impact_hinges: "The impulse follows from masses, velocities, place of contact, restitution and friction of \
         section 3; how much it changes with each of them was not computed.",
     hand_holds: "It holds if {holds}.",
-    hand_hinges: "What one standard deviation more of each input changes stands in the second table of section 1.",
+    hand_hinges: "What one standard deviation more of each input changes, or 1 % of an exact one, stands in section 8.",
     replay_hinges: "The speed at the contact follows from the recorded one, and from what is taken of the time between \
         the last sample and the contact; how much it changes with each of these was not computed.",
     doubtful_record: "The record is doubtful in what the warnings in section 6 name, which is not in the interval.",
@@ -260,7 +260,7 @@ const DE: OpinionWords = OpinionWords {
     impact_hinges: "Der Impuls folgt aus Massen, Geschwindigkeiten, Kontaktort, Stoßziffer und Reibbeiwert in Abschnitt \
         3; wie stark er sich mit jedem davon ändert, wurde nicht berechnet.",
     hand_holds: "Voraussetzung: {holds}.",
-    hand_hinges: "Was eine Standardabweichung mehr jeder Eingabe ändert, steht in der zweiten Tabelle von Abschnitt 1.",
+    hand_hinges: "Was eine Standardabweichung mehr jeder Eingabe oder 1 % einer genauen ändert, steht in Abschnitt 8.",
     replay_hinges: "Die Geschwindigkeit beim Kontakt folgt aus der aufgezeichneten und aus dem, was für die Zeit zwischen \
         dem letzten Abtastwert und dem Kontakt angenommen ist; wie stark sie sich mit jedem davon ändert, wurde nicht \
         berechnet.",
