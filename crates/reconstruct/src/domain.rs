@@ -72,8 +72,8 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
     (left + right) / STANDARD_GRAVITY_M_S2
 }
 
-/// What of a case lies outside of what rules, priors and model are known to hold for, damage off its car, standard
-/// deviations that are hardly meant, and drag that the road does not allow.
+/// What of a case lies outside of what rules, priors and model are known to hold for, damage off its car, and what is
+/// odd about the evidence by itself.
 ///
 /// - `zones`: parts of the ground with their own friction.
 pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
@@ -83,7 +83,8 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
         false => vehicle_caveats(cars),
     };
     let damage = damage_off_car(&evidence.damage, cars);
-    let odd = evidence.odd().into_iter().map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
+    let odd = evidence.odd().into_iter();
+    let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
     vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
 }
 

@@ -3,6 +3,7 @@
 //! World axes: origin at the CG of the struck car at first contact, X along its heading before the
 //! impact, Y to the left. Those of a single car are free: everything found is in the same ones.
 
+use impactlab_core::units::Phrase;
 use impactlab_core::vehicle::RoadSlope;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -346,6 +347,11 @@ impl Evidence {
         self.striking_after.driver_braked != YesNoUnknown::Unknown
             || self.striking_after.is_all_locked()
             || [start_s, share, wheel_rad].iter().any(Option::is_some)
+    }
+
+    /// What is hardly meant or contradicts itself, by the evidence alone, in words.
+    pub fn odd(&self) -> Vec<Phrase> {
+        [self.odd_values(), self.odd_copies()].concat()
     }
 
     /// The same without the records of the event data recorders.

@@ -15,6 +15,7 @@ mod kind;
 mod mark;
 mod mirror;
 mod odd;
+mod odd_copy;
 mod odd_drag;
 mod places;
 mod position;

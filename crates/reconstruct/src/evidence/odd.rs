@@ -21,7 +21,7 @@ const BELOW: f64 = 100.0;
 impl Evidence {
     /// What is hardly meant as it is stated, in words: standard deviations far from what such an item is known to,
     /// drag that the road does not allow, and values in another unit, in this order.
-    pub fn odd(&self) -> Vec<Phrase> {
+    pub(super) fn odd_values(&self) -> Vec<Phrase> {
         let mut search = OfItems::default();
         self.clone().items(&mut search);
         let OfItems { sigmas, numbers } = search;
@@ -128,7 +128,7 @@ mod tests {
     use crate::evidence::examples::{SPIN, read};
 
     fn said(evidence: &Evidence) -> Vec<String> {
-        evidence.odd().iter().map(|phrase| phrase.say(&Default::default())).collect()
+        evidence.odd_values().iter().map(|phrase| phrase.say(&Default::default())).collect()
     }
 
     #[test]
