@@ -351,7 +351,7 @@ impl Evidence {
 
     /// What is hardly meant or contradicts itself, by the evidence alone, in words.
     pub fn odd(&self) -> Vec<Phrase> {
-        [self.odd_values(), self.odd_copies()].concat()
+        [self.odd_values(), self.odd_copies(), self.odd_courses()].concat()
     }
 
     /// The same without the records of the event data recorders.

@@ -16,6 +16,7 @@ mod mark;
 mod mirror;
 mod odd;
 mod odd_copy;
+mod odd_course;
 mod odd_drag;
 mod places;
 mod position;
