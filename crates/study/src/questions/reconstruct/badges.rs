@@ -175,24 +175,38 @@ pub(super) fn of_validation(
     Caveat::new(CaveatKind::HardlyValidated, text)
 }
 
-/// Marks of locked wheels that an anti-lock system would not have left, and damage did not.
+/// Marks of locked wheels that neither the brakes nor damage can have locked: nobody braked, or an anti-lock system kept
+/// them turning.
 pub(super) fn beside_locked_marks(evidence: &Evidence) -> Option<Caveat> {
     let cars =
         [(&evidence.after, &evidence.marks), (&evidence.striking_after, &evidence.striking_marks)];
-    let is_odd = |(after, marks): (&After, &Vec<Mark>)| {
-        let blocked = after.blocked_wheels.as_deref().unwrap_or_default();
+    let is_odd = |(after, marks): &(&After, &Vec<Mark>)| {
+        let held = [&after.blocked_wheels, &after.dragging_wheels].into_iter().flatten().flatten();
         let is_by_brakes = evidence.is_single_car() || after.wheels_are_known();
-        let is_locked =
-            |mark: &Mark| mark.kind == Some(MarkKind::Locked) && !blocked.contains(&mark.wheel);
-        after.anti_lock == YesNoUnknown::Yes && is_by_brakes && marks.iter().any(is_locked)
+        let is_locked = |mark: &Mark| {
+            mark.kind == Some(MarkKind::Locked) && !held.clone().any(|wheel| *wheel == mark.wheel)
+        };
+        is_by_brakes && marks.iter().any(is_locked)
     };
-    let text = Phrase::new(
+    let odd: Vec<&After> = cars.into_iter().filter(is_odd).map(|(after, _)| after).collect();
+    let of_driver = Phrase::new(
+        "marks of locked wheels do not go with a driver who did not brake: look again at the marks, at what the driver \
+         did, and at which wheels the damage held",
+        "Spuren blockierter Räder passen nicht zu einem Fahrer, der nicht bremste: die Spuren, das Verhalten des \
+         Fahrers und die vom Schaden gehemmten Räder noch einmal prüfen",
+    );
+    let of_brakes = Phrase::new(
         "marks of locked wheels do not go with anti-lock brakes: look again at the marks, or at whether the system \
          worked",
         "Spuren blockierter Räder passen nicht zu einem Antiblockiersystem: die Spuren noch einmal ansehen, oder ob \
          das System arbeitete",
     );
-    cars.into_iter().any(is_odd).then(|| Caveat::new(CaveatKind::Disagreement, text))
+    let text = if odd.iter().any(|after| after.driver_braked == YesNoUnknown::No) {
+        of_driver
+    } else {
+        odd.iter().any(|after| after.anti_lock == YesNoUnknown::Yes).then_some(of_brakes)?
+    };
+    Some(Caveat::new(CaveatKind::Disagreement, text))
 }
 
 /// Parts of the evidence that the others contradict, though the answer follows them.

@@ -197,6 +197,7 @@ mod tests {
     use crate::questions::reconstruct::assumed::assumptions;
     use crate::questions::reconstruct::badges::beside_locked_marks;
     use impactlab_core::data::TomlFile;
+    use impactlab_core::vehicle::Wheel;
     use impactlab_reconstruct::evidence::EvidenceKind;
     use impactlab_reconstruct::{Cars, ForwardModel};
 
@@ -264,8 +265,27 @@ mod tests {
         assert_eq!(beside_locked_marks(&pair), None, "damage may have locked it");
         pair.after.blocked_wheels = Some(Vec::new());
         assert!(beside_locked_marks(&pair).is_some());
+        pair.after.dragging_wheels = Some(vec![Wheel::FrontLeft]);
+        assert_eq!(beside_locked_marks(&pair), None, "a wheel that drags may have locked");
         let request = ReconstructRequest::new(crate::EvidenceChoice::File("case.toml".into()));
         assert!(!unused(&request, &evidence("", &both)).is_empty());
         assert!(unused(&request, &evidence("", yes)).is_empty());
+    }
+
+    /// The kind of a mark was weighed alike in all motions, and nothing said that none of them can leave it.
+    #[test]
+    fn marks_of_locked_wheels_beside_a_driver_who_did_not_brake_are_told() {
+        let told = |evidence: &Evidence| beside_locked_marks(evidence).map(|caveat| caveat.text);
+        let coasts = "driver_braked = \"no\"";
+        let text = told(&evidence("", coasts)).unwrap();
+        assert!(text.starts_with("marks of locked wheels do not go with a driver who"), "{text}");
+        assert_eq!(told(&evidence("", "driver_braked = \"yes\"")), None);
+        let mut pair = evidence("", &format!("{coasts}\nblocked_wheels = [\"RL\"]"));
+        pair.kind = EvidenceKind::Collision;
+        assert!(told(&pair).is_some());
+        pair.after.blocked_wheels = Some(vec![Wheel::FrontLeft]);
+        assert_eq!(told(&pair), None, "damage locked it");
+        pair.after.blocked_wheels = None;
+        assert_eq!(told(&pair), None, "nobody looked what the damage did");
     }
 }
