@@ -2,6 +2,7 @@
 
 pub(crate) mod assumed;
 mod badges;
+mod cut_off;
 pub(crate) mod later_contacts;
 mod particle_columns;
 pub(crate) mod paths;

@@ -15,6 +15,7 @@ use crate::questions::reconstruct::assumed::{assumptions, unused};
 use crate::questions::reconstruct::badges::{
     beside_locked_marks, of_fit, of_left_out, of_particles, of_validation, several_courses,
 };
+use crate::questions::reconstruct::cut_off::cut_off;
 use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
 use crate::questions::reconstruct::paths::compared_marks;
 use crate::questions::reconstruct::progress::progress;
@@ -463,7 +464,7 @@ impl ReconstructRequest {
         caveats.extend(of_fit(&fit).into_iter().chain(beside_locked_marks(&evidence)));
         let left_out = self.left_out(&target, &particles, &fit, observer);
         let alone = left_out.iter().map(|part| part.n_simulations).sum::<usize>();
-        caveats.extend(of_left_out(&left_out));
+        caveats.extend(of_left_out(&left_out).into_iter().chain(cut_off(&posterior, &target)));
         let known = KnownEvidence::like(target.evidence(), cars);
         caveats.extend(match is_single_car {
             true => single_car::restrictions(&evidence),
