@@ -6,7 +6,7 @@ use impactlab_core::collision::{Footprint, OffOutline, Side};
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity, STANDARD_GRAVITY_M_S2};
 use impactlab_core::vehicle::sheet::SheetQuantity;
-use impactlab_core::vehicle::{FrictionZone, VehicleParameters};
+use impactlab_core::vehicle::{FrictionZone, VehicleParameters, hidden_zones};
 
 /// A quantity of a vehicle with the range over which the rules of the data sheet were fitted and the
 /// 4DOF model was tried: the vehicles of
@@ -73,7 +73,7 @@ fn rear_load_kg(car: &VehicleParameters) -> f64 {
 }
 
 /// What of a case lies outside of what rules, priors and model are known to hold for, damage off its car, and what is
-/// odd about the evidence by itself.
+/// odd about the evidence and the zones by themselves.
 ///
 /// - `zones`: parts of the ground with their own friction.
 pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Vec<Caveat> {
@@ -83,7 +83,7 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
         false => vehicle_caveats(cars),
     };
     let damage = damage_off_car(&evidence.damage, cars);
-    let odd = evidence.odd().into_iter();
+    let odd = evidence.odd().into_iter().chain(hidden_zones(zones));
     let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
     vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
 }

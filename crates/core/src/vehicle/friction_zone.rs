@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::{polygon_area, polygon_holds};
 use crate::ranges::{OutOfRange, POSITION, ROAD_FRICTION};
+use crate::units::{Phrase, PhraseValue};
 
 /// Most corners of a border: more than any outline in a plan of a scene has.
 pub const MAX_BORDER_CORNERS: usize = 1000;
@@ -14,6 +15,9 @@ pub const ZONE_FRICTION_LOG_SIGMA: f64 = 0.15;
 
 /// Smallest area of a zone, m².
 const LEAST_AREA_M2: f64 = 1e-4;
+
+/// Places along each side of the rectangle about a zone at which it is looked at.
+const N_ACROSS: usize = 20;
 
 /// A part of the ground with its own friction. Where zones overlap, the last of a list holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -132,6 +136,21 @@ impl FrictionZone {
         polygon_holds(&self.border_m, place_m)
     }
 
+    /// Places in it, evenly spread; none in one that is narrower than they are apart.
+    fn places(&self) -> impl Iterator<Item = [f64; 2]> {
+        let ends = |axis: usize| {
+            let along = self.border_m.iter().map(|corner| corner[axis]);
+            [along.clone().fold(f64::INFINITY, f64::min), along.fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let [x_m, y_m] = [ends(0), ends(1)];
+        let at = |[low, high]: [f64; 2], i: usize| {
+            low + (high - low) * (i as f64 + 0.5) / N_ACROSS as f64
+        };
+        let cells = 0..N_ACROSS * N_ACROSS;
+        let places = cells.map(move |cell| [at(x_m, cell / N_ACROSS), at(y_m, cell % N_ACROSS)]);
+        places.filter(move |place| self.holds(*place))
+    }
+
     /// The corners with their numbers from 1, without those that repeat the corner before.
     fn different_corners(&self) -> Vec<(usize, [f64; 2])> {
         let mut corners: Vec<(usize, [f64; 2])> = Vec::with_capacity(self.border_m.len());
@@ -156,6 +175,27 @@ impl FrictionZone {
 pub fn friction_at(zones: &[FrictionZone], place_m: [f64; 2], elsewhere: f64) -> f64 {
     let zone = zones.iter().rev().find(|zone| zone.holds(place_m));
     zone.map_or(elsewhere, |zone| zone.friction)
+}
+
+/// The zones that hold nowhere, since later ones of another friction lie over all of them, in words.
+///
+/// - `zones`: where they overlap, the last one holds.
+pub fn hidden_zones(zones: &[FrictionZone]) -> Vec<Phrase> {
+    let is_hidden = |(idx, zone): &(usize, &FrictionZone)| {
+        let later = zones.get(idx + 1..).unwrap_or_default();
+        let is_over = |place| friction_at(later, place, zone.friction) != zone.friction;
+        zone.places().next().is_some() && zone.places().all(is_over)
+    };
+    let told = |(_, zone): (usize, &FrictionZone)| {
+        Phrase::new(
+            "the friction of the zone {0} counts nowhere: zones after it lie over all of it, and where zones overlap, \
+             the last one holds; put it after them",
+            "Der Reibbeiwert des Bereichs {0} gilt nirgends: Spätere Bereiche überdecken ihn ganz, und wo Bereiche \
+             einander überdecken, gilt der letzte; ihn hinter sie stellen",
+        )
+        .with(PhraseValue::Name(format!("{:?}", zone.name)))
+    };
+    zones.iter().enumerate().filter(is_hidden).map(told).collect()
 }
 
 /// The numbers of the corners at which two sides begin that cross; `None` if no sides do.
@@ -224,6 +264,25 @@ mod tests {
         for (place, friction) in [(0.5, 0.1), (1.5, 0.4), (2.5, 0.4), (3.5, 0.8)] {
             assert_eq!(friction_at(&zones, [place; 2], 0.8), friction, "at {place}");
         }
+    }
+
+    /// A verge that is drawn after a patch of ice on it takes the ice away, and nothing said so.
+    #[test]
+    fn a_zone_that_later_ones_lie_over_is_told() {
+        let strip = |[low, high]: [f64; 2]| [[low, 0.0], [high, 0.0], [high, 2.0], [low, 2.0]];
+        let [ice, left, right] = [strip([4.0, 6.0]), strip([0.0, 5.0]), strip([5.0, 9.0])];
+        let n_hidden = |zones: &[FrictionZone]| hidden_zones(zones).len();
+        // Of two halves that lie over it only both hide it, and they have its border in part.
+        assert_eq!(n_hidden(&[zone(&ice, 0.1), zone(&left, 0.5)]), 0);
+        assert_eq!(n_hidden(&[zone(&ice, 0.1), zone(&left, 0.5), zone(&right, 0.4)]), 1);
+        assert_eq!(n_hidden(&[zone(&left, 0.5), zone(&right, 0.4), zone(&ice, 0.1)]), 0);
+        // The same outline twice, and one friction, of which it does not matter who has it.
+        let said = hidden_zones(&[zone(&BENT, 0.1), zone(&BENT, 0.5)]);
+        let texts: Vec<String> = said.iter().map(|of| of.say(&Default::default())).collect();
+        assert_eq!(texts.len(), 1, "{texts:?}");
+        assert!(texts[0].starts_with("the friction of the zone \"ice\" counts"), "{texts:?}");
+        assert_eq!(n_hidden(&[zone(&BENT, 0.1), zone(&BENT, 0.1)]), 0);
+        assert_eq!(n_hidden(&[zone(&BENT, 0.1)]), 0);
     }
 
     #[test]

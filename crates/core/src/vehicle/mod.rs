@@ -67,6 +67,7 @@ pub use fixed_object::{FIXED_MASS_KG, FIXED_YAW_INERTIA_KG_M2, FixedObject};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
 pub use friction_zone::{
     FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, ZONE_FRICTION_LOG_SIGMA, friction_at,
+    hidden_zones,
 };
 pub(crate) use held_force::HeldForceRun;
 pub use loads::Wheel;

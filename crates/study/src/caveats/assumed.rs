@@ -4,12 +4,12 @@ use impactlab_core::collision::{
     Impact, Scenario, ScenarioGeometry, TOUCH_TOLERANCE_M, default_restitution_in_words,
 };
 use impactlab_core::numerics::NORMAL_QUANTILE_95;
-use impactlab_core::uncertainty::{Caveat, CaveatSubject, CaveatText};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, CaveatText};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{
     ContactPoint, FrictionZone, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters,
-    ZONE_FRICTION_LOG_SIGMA,
+    ZONE_FRICTION_LOG_SIGMA, hidden_zones,
 };
 
 use crate::SimulateRequest;
@@ -75,8 +75,8 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
     Some(Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
 }
 
-/// How uncertain the friction of zones of the ground is, where that of the road is drawn.
-pub(crate) fn zones(zones: &[FrictionZone]) -> Option<Caveat> {
+/// How uncertain the friction of zones of the ground is, where that of the road is drawn, and those that hold nowhere.
+pub(crate) fn zones(zones: &[FrictionZone]) -> Vec<Caveat> {
     let names: Vec<&str> = zones.iter().map(|zone| zone.name.as_str()).collect();
     let reach = (NORMAL_QUANTILE_95 * ZONE_FRICTION_LOG_SIGMA).exp();
     let value = Phrase::new(
@@ -92,7 +92,10 @@ pub(crate) fn zones(zones: &[FrictionZone]) -> Option<Caveat> {
         "90 %: über ihre Unsicherheit ist nichts angegeben; alle sind gemeinsam besser oder schlechter, in \
          jeder Ziehung um einen anderen Faktor, der für beide Fahrzeuge gilt",
     );
-    (!names.is_empty()).then(|| Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
+    let drawn = Caveat::assumed(CaveatSubject::RoadFriction, value, reason);
+    let hidden = hidden_zones(zones).into_iter();
+    let hidden = hidden.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
+    (!names.is_empty()).then_some(drawn).into_iter().chain(hidden).collect()
 }
 
 /// A quantity of a data sheet with its interval of 90 %.

@@ -467,8 +467,14 @@ mod tests {
         assert_eq!(caveat.kind, CaveatKind::NotUsed);
         assert_eq!(caveat.text, "friction zones: ice");
         // One that knows them draws their friction.
-        let drawn = crate::caveats::assumed::zones(&struck.friction_zones).unwrap();
+        let drawn = crate::caveats::assumed::zones(&struck.friction_zones);
         let text = "zones of the site (ice), all with 0.78 to 1.28 times the friction that it says";
-        assert_eq!(drawn.text, text);
+        assert_eq!(drawn.iter().map(|caveat| &caveat.text).collect::<Vec<_>>(), [text]);
+        // What lies under a verge that stands after it is told to hold nowhere.
+        let verge = FrictionZone { friction: 0.5, ..struck.friction_zones[0].clone() };
+        struck.friction_zones.push(verge);
+        let drawn = crate::caveats::assumed::zones(&struck.friction_zones);
+        assert!(drawn[1].text.contains("zone \"ice\" counts nowhere"), "{drawn:?}");
+        assert!(drawn[1].is_warning());
     }
 }

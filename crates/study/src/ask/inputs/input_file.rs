@@ -21,7 +21,7 @@ use impactlab_core::site::{
     CloudFormat, CloudSummary, Site, SiteError, read_drawing, read_picture, survey_cloud,
 };
 use impactlab_core::units::{NumberFormat, Phrase, UnitSystem};
-use impactlab_core::vehicle::VehicleParameters;
+use impactlab_core::vehicle::{VehicleParameters, hidden_zones};
 use impactlab_networks::nn::kind_of_file;
 use impactlab_networks::response::evaluate::Comparison;
 use impactlab_reconstruct::evidence::Evidence;
@@ -223,7 +223,8 @@ impl InputFile {
                 let of_drawing = of_drawing.flat_map(|(drawing, file)| drawing.notes(&file.file));
                 let contents =
                     site.contents(summary.as_ref(), UnitSystem::Si).into_iter().chain(of_drawing);
-                Ok(contents.chain(site.notes.iter().cloned()).collect())
+                let hidden = said(&hidden_zones(&site.friction_zones));
+                Ok(contents.chain(site.notes.iter().cloned()).chain(hidden).collect())
             }
             Self::Cloud(summary) => {
                 Ok(summary.contents().into_iter().chain(summary.unit_note.clone()).collect())
