@@ -18,6 +18,9 @@ use impactlab_core::bibliography::Brach2011;
 use impactlab_core::ranges::{BODY_MASS, HEADING, SPEED};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 
+/// Angle between the courses up to which they are one line as they are stated, but for rounding, rad.
+const ONE_LINE_RAD: f64 = 1e-6;
+
 /// Least angle between the courses at which momentum gives both speeds, rad: 20°.
 pub(super) const LEAST_ANGLE_RAD: f64 = 0.35;
 
@@ -110,7 +113,7 @@ pub(super) const AT_ANGLES: Formula = Formula {
         LOSS,
     ],
     solve: solve_at_angles,
-    refuse: accept,
+    refuse: refuse_one_line,
     warn: warn_at_angles,
 };
 
@@ -167,6 +170,18 @@ fn solve_at_angles(values: &HandValues<'_>) -> Vec<f64> {
     vec![before[0], before[1], change(u1, v1), change(u2, v2), energy(before) - energy(after)]
 }
 
+/// How far the courses before the impact lie off one line, as a sine.
+fn sine_between(values: &HandValues<'_>) -> f64 {
+    (values.number("course_2") - values.number("course_1")).sin().abs()
+}
+
+fn refuse_one_line(values: &HandValues<'_>) -> Option<&'static str> {
+    (sine_between(values) < ONE_LINE_RAD).then_some(
+        "the courses before the impact lie on one line, along which momentum gives one speed and not both: use \
+         momentum-in-line, or check the courses",
+    )
+}
+
 /// Energy that an impact brings forth.
 fn gain(loss_j: f64) -> (bool, Phrase) {
     let phrase = Phrase::new(
@@ -198,7 +213,7 @@ fn in_line_warnings(outputs: &[f64]) -> Vec<Phrase> {
 
 fn warn_at_angles(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
     let &[speed_1, speed_2, _, _, loss_j] = outputs else { return Vec::new() };
-    let across = (values.number("course_2") - values.number("course_1")).sin().abs();
+    let across = sine_between(values);
     let flat = Phrase::new(
         "the courses before the impact lie only {0} off one line: small errors of courses and masses move both \
          speeds far; the method is not made for that",
@@ -219,7 +234,9 @@ fn warn_at_angles(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
 
 #[cfg(test)]
 mod tests {
+    use crate::evidence::Stated;
     use crate::hand::HandMethod::{Momentum, MomentumInLine};
+    use crate::hand::HandQuestion;
     use crate::hand::calculation::tests::{near, solved};
     use impactlab_core::units::{NumberFormat, UnitSystem};
 
@@ -312,6 +329,34 @@ mod tests {
             let reduced = mass_kg[0] * mass_kg[1] / (mass_kg[0] + mass_kg[1]);
             near(&outputs[4..], &[0.5 * reduced * between]);
         }
+    }
+
+    /// The sine of 180° is not quite 0: both speeds came out at 10¹⁷ km/h.
+    #[test]
+    fn courses_on_one_line_give_no_two_speeds() {
+        let refused = |course_1: f64, course_2: f64| {
+            let inputs = [
+                ("mass_1_kg", 1500.0),
+                ("mass_2_kg", 1200.0),
+                ("speed_after_1_m_s", 12.0),
+                ("speed_after_2_m_s", 9.0),
+                ("course_1_rad", course_1.to_radians()),
+                ("course_2_rad", course_2.to_radians()),
+                ("course_after_1_rad", 0.4),
+                ("course_after_2_rad", 0.7),
+            ];
+            let stated = |&(key, value): &(&str, f64)| {
+                (key.to_owned(), Stated { value: Some(value), sigma: None })
+            };
+            let inputs = inputs.iter().map(stated).collect();
+            let question = HandQuestion { method: Momentum, inputs: &inputs, points_m: &[] };
+            question.numbers().err().map(|error| error.to_string())
+        };
+        for course in [0.0, 180.0, -180.0, 360.0] {
+            let error = refused(10.0, 10.0 + course).unwrap();
+            assert!(error.contains("use momentum-in-line"), "{course}°: {error}");
+        }
+        assert_eq!(refused(10.0, 11.0), None);
     }
 
     /// “A restitution of NaN, expected 0 to 1” was the warning.
