@@ -150,19 +150,23 @@ fn drag_on_grade(drag: f64, grade: f64) -> f64 {
     (drag + grade) / grade.hypot(1.0)
 }
 
+/// Deceleration over g on a surface.
+///
+/// - `share`: of its drag that brakes the vehicle.
+fn drag_on(values: &HandValues<'_>, share: f64, [_, friction, grade]: [&str; 3]) -> f64 {
+    drag_on_grade(share * values.number(friction), values.get(grade).unwrap_or(0.0))
+}
+
 fn slide(values: &HandValues<'_>, share: f64) -> Vec<f64> {
-    let drag = |[_, friction, grade]: [&str; 3]| {
-        drag_on_grade(share * values.number(friction), values.get(grade).unwrap_or(0.0))
-    };
     let lost = |surface: [&'static str; 3]| {
         let distance_m = values.get(surface[0])?;
-        Some(2.0 * STANDARD_GRAVITY_M_S2 * drag(surface) * distance_m)
+        Some(2.0 * STANDARD_GRAVITY_M_S2 * drag_on(values, share, surface) * distance_m)
     };
     let squares: f64 = SURFACES.into_iter().filter_map(lost).sum();
     let other = values.get("other_speed").unwrap_or(0.0);
     let end = values.number("end_speed");
     let speed = (squares + end * end + other * other).sqrt();
-    vec![speed, STANDARD_GRAVITY_M_S2 * drag(SURFACES[0])]
+    vec![speed, STANDARD_GRAVITY_M_S2 * drag_on(values, share, SURFACES[0])]
 }
 
 fn refuse_skid(values: &HandValues<'_>) -> Option<&'static str> {
@@ -174,16 +178,22 @@ fn refuse_skid(values: &HandValues<'_>) -> Option<&'static str> {
     is_any_half.then_some("a surface needs both its distance and its drag factor")
 }
 
-/// A surface on which nothing slows down.
-fn no_drag(outputs: &[f64]) -> (bool, Phrase) {
+/// The first surface on which nothing slows down.
+fn no_drag(values: &HandValues<'_>, share: f64) -> (bool, Phrase) {
+    let is_without = |surface: &[&'static str; 3]| {
+        values.get(surface[0]).is_some() && drag_on(values, share, *surface) <= 0.0
+    };
+    let idx = SURFACES.iter().position(is_without);
     let phrase = Phrase::new(
-        "the vehicle would gain speed on the first surface: the grade is steeper than its drag",
-        "Das Fahrzeug würde auf der ersten Fläche schneller: das Gefälle ist größer als die Verzögerung",
+        "the vehicle would gain speed on surface {0}: the grade is steeper than its drag, and no vehicle comes to rest \
+         there",
+        "Das Fahrzeug würde auf Fläche {0} schneller: das Gefälle ist größer als die Verzögerung, und kein Fahrzeug \
+         kommt dort zum Stillstand",
     );
-    (outputs.get(1).is_some_and(|deceleration| *deceleration <= 0.0), phrase)
+    (idx.is_some(), phrase.with(PhraseValue::Name((idx.unwrap_or(0) + 1).to_string())))
 }
 
-fn warn_spin(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
+fn warn_spin(values: &HandValues<'_>, _: &[f64]) -> Vec<Phrase> {
     let turn = values.get("turn").map_or(f64::INFINITY, f64::abs);
     let straight = Phrase::new(
         "the vehicle turned by {0} only: the drag of a car that rolls straight on is far less than that of one \
@@ -192,7 +202,10 @@ fn warn_spin(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
          schleuderndes",
     );
     let angle = PhraseValue::fixed(Quantity::Angle, turn, 0).in_unit("deg");
-    violated([(!is_quarter_turn(turn), straight.with(angle)), no_drag(outputs)])
+    violated([
+        (!is_quarter_turn(turn), straight.with(angle)),
+        no_drag(values, values.number("rolling_factor")),
+    ])
 }
 
 fn warn_skid(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
@@ -210,15 +223,18 @@ fn warn_skid(values: &HandValues<'_>, outputs: &[f64]) -> Vec<Phrase> {
     violated([
         (speed > 40.0, fast.with(PhraseValue::three_digits(Quantity::Speed, speed))),
         (values.number("friction") > 1.0, slippery),
-        no_drag(outputs),
+        no_drag(values, values.number("braked_share")),
     ])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evidence::Stated;
     use crate::hand::HandMethod::{Skid, SpinOut};
+    use crate::hand::HandQuestion;
     use crate::hand::calculation::tests::{near, solved};
+    use impactlab_core::units::NumberFormat;
 
     const G: f64 = STANDARD_GRAVITY_M_S2;
 
@@ -277,5 +293,30 @@ mod tests {
         let skid = solved(Skid, &[("distance_m", 25.0), ("friction", 0.72)])[0];
         near(&[with(1.0, 0.0), with(0.25, 0.0)], &[skid, skid / 2.0]);
         near(&[with(1.0, 10.0)], &[skid.hypot(10.0)]);
+    }
+
+    /// Only the first of several surfaces was looked at.
+    #[test]
+    fn a_surface_that_is_steeper_than_its_drag_is_told() {
+        let told = |friction_2: f64| -> Vec<String> {
+            let inputs = [
+                ("distance_m", 30.0),
+                ("friction", 0.7),
+                ("distance_2_m", 20.0),
+                ("friction_2", friction_2),
+                ("grade_2", -0.4),
+            ];
+            let stated = |(key, value): (&str, f64)| {
+                (key.to_owned(), Stated { value: Some(value), sigma: Some(0.0) })
+            };
+            let inputs = inputs.into_iter().map(stated).collect();
+            let question = HandQuestion { method: Skid, inputs: &inputs, points_m: &[] };
+            let violated = question.answer(100, 0).unwrap().violated;
+            violated.iter().map(|phrase| phrase.say(&NumberFormat::default())).collect()
+        };
+        assert_eq!(told(0.5), Vec::<String>::new());
+        let found = told(0.3);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("the vehicle would gain speed on surface 2: "), "{found:?}");
     }
 }
