@@ -3,9 +3,9 @@
 
 use crate::ranges::{
     BODY_WIDTH, BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, CRUSH_DEPTH, DRAG_SHARE, ENGINE_BRAKING,
-    EVIDENCE_POSITION, EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_LIMIT, REACTION_TIME, RESTITUTION,
-    ROAD_CROSS_SLOPE, ROAD_FRICTION, ROAD_GRADE, ROLLING_RESISTANCE, Range, SKID_LENGTH, SPEED,
-    STEERING_RATIO, STEERING_WHEEL_ANGLE, YAW_RATE,
+    EVIDENCE_POSITION, EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_LIMIT, HAND_GRADE, REACTION_TIME,
+    RESTITUTION, ROAD_CROSS_SLOPE, ROAD_FRICTION, ROAD_GRADE, ROLLING_RESISTANCE, Range,
+    SKID_LENGTH, SPEED, STEERING_RATIO, STEERING_WHEEL_ANGLE, YAW_RATE,
 };
 use crate::units::{Phrase, PhraseValue, Unit};
 
@@ -20,7 +20,7 @@ type Usual = (Range, [f64; 2], f64);
 /// A driver brakes seconds after a contact; the fastest road cars reach 120 m/s, and collisions are below 70 m/s; racing
 /// tires reach a friction of 1.3 on asphalt; car drivers turn the steering wheel by two turns, and before a collision cars
 /// turn slower than in a spin.
-const USUAL: [Usual; 22] = [
+const USUAL: [Usual; 23] = [
     (CONTROL_TIME, [0.0, 60.0], 1e-3),
     (BRAKE_RISE, [0.0, 5.0], 0.0),
     (REACTION_TIME, [0.0, 10.0], 1e-3),
@@ -34,6 +34,7 @@ const USUAL: [Usual; 22] = [
     (RESTITUTION, [0.0, 1.0], 3e-3),
     (ROAD_FRICTION, [0.04, 1.3], 0.0),
     (ROAD_GRADE, [-0.3, 0.3], 2e-3),
+    (HAND_GRADE, [-0.3, 0.3], 2e-3),
     (ROAD_CROSS_SLOPE, [-0.3, 0.3], 2e-3),
     (FRICTION_LIMIT, [0.0, 3.0], 0.0),
     (ROLLING_RESISTANCE, [0.0, 0.15], 0.0),
@@ -52,6 +53,11 @@ impl Range {
     /// - `key`: what the number is called;
     /// - `value`: SI units.
     pub fn odd(&self, key: &str, value: f64) -> Option<Phrase> {
+        self.odd_of(&PhraseValue::Name(key.to_owned()), value)
+    }
+
+    /// The same of a number that has a name in every language.
+    pub fn odd_of(&self, name: &PhraseValue, value: f64) -> Option<Phrase> {
         let is_same = |(range, ..): &&Usual| {
             range.name == self.name && range.meaning == self.meaning && range.unit() == self.unit()
         };
@@ -62,7 +68,7 @@ impl Range {
             return None;
         }
         let number = |value: f64| PhraseValue::given(self.quantity, value);
-        let said = |text: Phrase| text.with(PhraseValue::Name(key.to_owned())).with(number(value));
+        let said = |text: Phrase| text.with(name.clone()).with(number(value));
         if (low..=high).contains(&value) {
             let text = Phrase::new(
                 "{0} is {1}, which is next to nothing: is it in another unit, or a number of per cent?",

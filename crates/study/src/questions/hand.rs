@@ -282,6 +282,11 @@ fn caveats(answer: &HandAnswer, draws: usize, bias: Option<&YawMarkBias>) -> Cav
     let violated = answer.violated.iter().cloned();
     let violated = violated.map(|phrase| Caveat::new(CaveatKind::OutsideDomain, phrase));
     let mut all: Vec<Caveat> = violated.collect();
+    let odd = |of: &HandNumber| {
+        of.field.range.odd_of(&PhraseValue::Term(of.field.label.to_owned()), of.value)
+    };
+    let odd = answer.numbers.iter().filter_map(odd);
+    all.extend(odd.map(|phrase| Caveat::new(CaveatKind::DoubtfulData, phrase)));
     let is_exact = answer.quantities.iter().all(|of| of.estimate.intervals.is_empty());
     if is_exact {
         let phrase = Phrase::new(
@@ -424,6 +429,25 @@ mod tests {
         assert!(answer.caveats.has(CaveatKind::OutsideDomain), "{:?}", answer.caveats);
         assert!(answer.caveats.has(CaveatKind::NoInterval), "{:?}", answer.caveats);
         assert!(answer.results[0].estimate.intervals.is_empty());
+    }
+
+    /// Of evidence and scenarios it was told, and of a calculation by hand it was not.
+    #[test]
+    fn a_number_in_another_unit_is_doubtful() {
+        let told = |speed_m_s: f64| {
+            let asked = request(
+                HandMethod::TimeDistance,
+                &[("speed_m_s", speed_m_s, None), ("deceleration_m_s2", 8.0, None)],
+            );
+            let caveats = answer(&asked).caveats;
+            let doubtful = caveats.iter().filter(|it| it.kind == CaveatKind::DoubtfulData);
+            doubtful.map(|it| it.text.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(told(25.0), Vec::<String>::new());
+        let found = told(90.0);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("speed of the vehicle is 90 m/s, and of coll"), "{found:?}");
+        assert!(found[0].ends_with("is it in km/h, mph, ft/s?"), "{found:?}");
     }
 
     #[test]
