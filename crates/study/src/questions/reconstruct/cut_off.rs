@@ -1,9 +1,11 @@
-//! Speeds that the range in which they are taken to lie cuts off.
+//! Speeds and the angle of the cars that the range in which they are taken to lie cuts off.
 
 use impactlab_core::numerics::quantile_of_sorted;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
-use impactlab_reconstruct::{Distribution, Posterior, PriorComponent, ReconstructionTarget};
+use impactlab_reconstruct::{
+    Distribution, Latent, Posterior, PriorComponent, ReconstructionTarget,
+};
 
 /// Distance from the end of a range to the median, over that from the median to the quantile of 5 % on the other side,
 /// below which the end cuts off what the evidence says: 1 of a normal distribution that reaches its end at 95 %, 1.1
@@ -12,23 +14,25 @@ const LEAST_ROOM: f64 = 0.55;
 /// Quantile on the other side of the median.
 const FAR: f64 = 0.05;
 
-/// The speeds of the answer that lie at an end of their range, though the evidence may want them beyond it: the interval
-/// is then that of the range.
+/// What is asked for and lies at an end of its range, though the evidence may want it beyond: the interval is then that
+/// of the range.
 pub(super) fn cut_off(posterior: &Posterior, target: &ReconstructionTarget) -> Vec<Caveat> {
     if !posterior.has_intervals() {
         return Vec::new();
     }
     let told = |component: &PriorComponent| {
         let values = posterior.values.iter().map(|values| values.get(component.latent));
-        of_speed(component, &values.collect::<Vec<f64>>())
+        of_component(component, &values.collect::<Vec<f64>>())
     };
     target.model().prior().components().iter().filter_map(told).collect()
 }
 
 /// - `values`: one for each motion.
-fn of_speed(component: &PriorComponent, values: &[f64]) -> Option<Caveat> {
+fn of_component(component: &PriorComponent, values: &[f64]) -> Option<Caveat> {
     let Distribution::Uniform { low, high } = component.distribution else { return None };
-    if component.latent.quantity() != Quantity::Speed {
+    let quantity = component.latent.quantity();
+    // What drivers and contacts do is seldom known, and no answer.
+    if quantity != Quantity::Speed && component.latent != Latent::HeadingTowards {
         return None;
     }
     let mut sorted = values.to_vec();
@@ -36,12 +40,20 @@ fn of_speed(component: &PriorComponent, values: &[f64]) -> Option<Caveat> {
     let quantile = |probability| quantile_of_sorted(&sorted, probability);
     let median = quantile(0.5)?;
     let ends = [(low, quantile(1.0 - FAR)?), (high, quantile(FAR)?)];
-    // No speed is below 0.
+    // No speed is below 0, and cars that stand parallel are at the end of what is turned in.
     let is_cut = |(end, far): &(f64, f64)| {
         *end > 0.0 && (end - median).abs() < LEAST_ROOM * (far - median).abs()
     };
     let (end, _) = ends.into_iter().find(is_cut)?;
-    let speed = |value| PhraseValue::given(Quantity::Speed, value);
+    let number = |value: f64| match quantity {
+        Quantity::Angle => PhraseValue::fixed(quantity, value, 0).in_unit("deg"),
+        _ => PhraseValue::given(quantity, value),
+    };
+    let within = (end - median).abs();
+    let within = match quantity {
+        Quantity::Angle => PhraseValue::fixed(quantity, within, 1).in_unit("deg"),
+        _ => PhraseValue::three_digits(quantity, within),
+    };
     let text = Phrase::new(
         "{0}: half of the motions lie within {1} of {2}, an end of the range of {3} to {4}: the range cuts the answer \
          off, and its interval is too narrow unless nothing beyond is possible; widen the range and look whether the \
@@ -51,10 +63,10 @@ fn of_speed(component: &PriorComponent, values: &[f64]) -> Option<Caveat> {
          Bereich erweitern und prüfen, ob sich die Antwort ändert",
     )
     .with(PhraseValue::Term(component.latent.label().to_owned()))
-    .with(PhraseValue::three_digits(Quantity::Speed, (end - median).abs()))
-    .with(speed(end))
-    .with(speed(low).bare())
-    .with(speed(high));
+    .with(within)
+    .with(number(end))
+    .with(number(low).bare())
+    .with(number(high));
     Some(Caveat::new(CaveatKind::Disagreement, text))
 }
 
@@ -62,12 +74,12 @@ fn of_speed(component: &PriorComponent, values: &[f64]) -> Option<Caveat> {
 mod tests {
     use super::*;
     use impactlab_core::numerics::normal_quantile;
-    use impactlab_reconstruct::{Latent, PriorSource};
+    use impactlab_reconstruct::PriorSource;
 
     fn told(latent: Latent, [low, high]: [f64; 2], values: &[f64]) -> Option<String> {
         let distribution = Distribution::Uniform { low, high };
         let component = PriorComponent { latent, distribution, source: PriorSource::Given };
-        of_speed(&component, values).map(|caveat| caveat.text)
+        of_component(&component, values).map(|caveat| caveat.text)
     }
 
     /// What a range leaves of a normal distribution.
@@ -94,8 +106,21 @@ mod tests {
         // No car is slower than one that stands, and a single value leaves nothing to cut off.
         assert_eq!(speed([0.0, 45.0], 0.0, 1.0), None);
         assert_eq!(told(Latent::StruckSpeed, [20.0, 20.0], &[20.0; 200]), None);
-        // When a driver braked is seldom known, and no answer.
         let range = [0.1, 0.2];
         assert_eq!(told(Latent::BrakeStart, range, &normal_within(range, 0.2, 0.02)), None);
+    }
+
+    /// Of cars that met at 140° without a stated angle the interval ended at 110°, where the assumed range does.
+    #[test]
+    fn an_angle_of_the_cars_that_the_assumed_range_cuts_off_is_told() {
+        let range = [0.0, 110_f64.to_radians()];
+        let degrees = |mean: f64, sigma: f64| {
+            let values = normal_within(range, mean.to_radians(), sigma.to_radians());
+            told(Latent::HeadingTowards, range, &values)
+        };
+        let text = degrees(140.0, 15.0).unwrap();
+        assert!(text.contains(" of 110 deg, an end of the range of 0 to 110 deg: "), "{text}");
+        assert_eq!(degrees(90.0, 8.0), None);
+        assert_eq!(degrees(0.0, 8.0), None);
     }
 }
