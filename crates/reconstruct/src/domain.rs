@@ -83,7 +83,8 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
         false => vehicle_caveats(cars),
     };
     let damage = damage_off_car(&evidence.damage, cars);
-    let odd = evidence.odd().into_iter().chain(hidden_zones(zones));
+    let odd = evidence.odd().into_iter().chain(evidence.odd_rests(cars));
+    let odd = odd.chain(hidden_zones(zones));
     let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
     vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
 }

@@ -18,6 +18,7 @@ mod odd;
 mod odd_copy;
 mod odd_course;
 mod odd_drag;
+mod odd_rest;
 mod places;
 mod position;
 mod prior_ranges;
