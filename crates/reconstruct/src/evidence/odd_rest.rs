@@ -7,7 +7,7 @@ use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 /// How far from its wheel a mark may end that leads to the rest, m: from a bumper to the CG, or across a car that is
 /// turned around.
 const NEAR_M: f64 = 4.0;
-/// How far it ends by errors alone, m: of 72 marks of locked wheels of the staged cases 70 end within 0.7 m, and the others
+/// How far it ends by errors alone, m: of 66 marks of locked wheels of the staged cases 64 end within 0.7 m, and the others
 /// beyond 4 m.
 const BY_ERRORS_M: f64 = 1.0;
 /// Standard deviations of the pose and of the mark that count as errors where they are larger.
