@@ -208,6 +208,30 @@ fn a_plan_that_is_wrong_is_refused_with_its_place() {
     }
 }
 
+/// “/home/ann/case/bad.toml:1:8: …” stood in the table, which goes to others.
+#[test]
+fn the_reason_of_a_row_says_no_folder_of_the_machine() {
+    let folder = TempDir::new().unwrap();
+    let files = ["bad.toml", "worse.toml"].map(|name| folder.path().join(name));
+    files.iter().for_each(|file| fs::write(file, "name = 3\n").unwrap());
+    let mut question = program();
+    question.args(["impact", "pit-right-rear", "--print-request"]);
+    fs::write(folder.path().join("ask.json"), ok(question.output().unwrap())).unwrap();
+    let plan = format!(
+        "question = \"request\"\ndesign = \"grid\"\nn = 1\n\
+         [request]\nfile = \"ask.json\"\n\
+         outcomes = [{{ name = \"x_m\", at = \"/x_m\", unit = \"m\" }}]\n\
+         [vary.scenario]\nat = \"/scenario/file\"\nlist = {files:?}\n"
+    );
+    let sweep = planned(&folder, &plan, "asked");
+    ok(run(&["run", shown(&sweep)]));
+    merged(&sweep);
+    let rows = read_rows(&sweep.with_extension("parquet")).unwrap();
+    let [bad, worse] = &rows.reasons[..] else { panic!("{:?}", rows.reasons) };
+    assert!(bad.starts_with("bad.toml:1:") && worse.starts_with("worse.toml:1:"), "{bad} {worse}");
+    assert!(!bad.contains(shown(folder.path())), "{bad}");
+}
+
 #[test]
 fn any_request_can_be_swept_and_a_row_that_fails_is_a_row_with_its_reason() {
     let folder = TempDir::new().unwrap();

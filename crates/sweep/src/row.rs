@@ -1,5 +1,6 @@
 //! The answer of one row.
 
+use std::cmp::Reverse;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -12,6 +13,7 @@ use crate::pit::{PitInput, PitRow, PitVehicles};
 use crate::plan::{PitQuestion, Plan, RequestQuestion, RowInputs, SweptQuestion};
 use crate::vary::listed;
 use impactlab_core::data::Outcome as Ended;
+use impactlab_core::data::write::with_name_for_path;
 use impactlab_core::error_chain;
 use impactlab_networks::force::ForceModel;
 use impactlab_networks::response::ResponseModel;
@@ -127,10 +129,12 @@ impl<'a> Answerer<'a> {
         let request = with_inputs(question, self.plan, inputs);
         let request: Request =
             serde_json::from_value(request).map_err(|error| error_chain(&error))?;
-        self.check_files_of(&request)?;
-        let answered = request
-            .run(library, &mut |_| ControlFlow::Continue(()))
-            .map_err(|error| error_chain(&error))?;
+        let checked = self.check_files_of(&request);
+        let answered = checked.and_then(|()| {
+            let answered = request.run(library, &mut |_| ControlFlow::Continue(()));
+            answered.map_err(|error| error_chain(&error))
+        });
+        let answered = answered.map_err(|reason| without_folders(reason, &request))?;
         let Ended::Complete(report) = answered else { return Err("cancelled".to_owned()) };
         let report = serde_json::to_value(&report).map_err(|error| error_chain(&error))?;
         let picked = question.outcomes.iter().map(|outcome| match report.pointer(&outcome.at) {
@@ -182,6 +186,21 @@ pub(crate) fn with_inputs(question: &RequestQuestion, plan: &Plan, inputs: &RowI
     let seed = inputs.seed >> 11;
     question.seed_at.iter().for_each(|at| put(at, Value::from(seed)));
     request
+}
+
+/// A reason with the names of files in place of their paths: a table of rows goes to others.
+fn without_folders(reason: String, request: &Request) -> String {
+    let mut paths = [request.named_paths(), request.files_read()].concat();
+    paths.extend(request.written_path().map(PathBuf::from));
+    // The longest first, so that a file is replaced before its folder.
+    paths.sort_by_key(|path| Reverse(path.as_os_str().len()));
+    paths.iter().fold(reason, |reason, path| match path.file_name() {
+        Some(name) if path.is_absolute() => {
+            let [path, name] = [path.as_os_str(), name].map(|part| part.to_string_lossy());
+            with_name_for_path(&reason, &path, &name)
+        }
+        _ => reason,
+    })
 }
 
 /// A reason within its length, in one line.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use impactlab_core::data::write::with_name_for_path;
 use impactlab_study::Request;
 use impactlab_study::case_file::CaseFile;
 
@@ -40,7 +41,8 @@ impl ShownPaths {
 
     /// A text with file names in place of paths.
     pub fn shown(&self, text: &str) -> String {
-        let replace = |text: String, (path, name): &(String, String)| replaced(&text, path, name);
+        let replace =
+            |text: String, (path, name): &(String, String)| with_name_for_path(&text, path, name);
         self.names.iter().fold(text.to_owned(), replace)
     }
 
@@ -49,22 +51,6 @@ impl ShownPaths {
         let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
         name.unwrap_or_else(|| path.to_string_lossy().into_owned())
     }
-}
-
-/// A text with a name in place of a path wherever that begins there: `/s` is no path in `m/s`.
-fn replaced(text: &str, path: &str, name: &str) -> String {
-    let (mut told, mut end) = (String::with_capacity(text.len()), 0);
-    for (at, _) in text.match_indices(path) {
-        let (before, _) = text.split_at(at);
-        if before.chars().next_back().is_some_and(char::is_alphanumeric) {
-            continue;
-        }
-        told.push_str(&text[end..at]);
-        told.push_str(name);
-        end = at + path.len();
-    }
-    told.push_str(&text[end..]);
-    told
 }
 
 #[cfg(test)]

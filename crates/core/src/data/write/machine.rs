@@ -74,6 +74,22 @@ pub(super) fn without_machine(text: &str, working_folder: Option<&Path>) -> Opti
     Some(format!("{key}={}", without_machine(value, working_folder)?))
 }
 
+/// A text with the name of a file in place of its path wherever that begins there: `/s` is no path in `m/s`.
+pub fn with_name_for_path(text: &str, path: &str, name: &str) -> String {
+    let (mut told, mut end) = (String::with_capacity(text.len()), 0);
+    for (at, _) in text.match_indices(path) {
+        let (before, _) = text.split_at(at);
+        if before.chars().next_back().is_some_and(char::is_alphanumeric) {
+            continue;
+        }
+        told.push_str(&text[end..at]);
+        told.push_str(name);
+        end = at + path.len();
+    }
+    told.push_str(&text[end..]);
+    told
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

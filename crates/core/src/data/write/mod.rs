@@ -26,7 +26,7 @@ pub use file::{Existing, check_ending, check_target, write_atomically, write_byt
 pub use folder::OutputFolder;
 pub use inputs::check_inputs;
 pub use lock::WriterLock;
-pub use machine::{json_without_machine, replace_strings};
+pub use machine::{json_without_machine, replace_strings, with_name_for_path};
 pub use manifest::{MANIFEST_FILE, Manifest, ModelDigest, RunRecord};
 pub use parquet_series::write_restricted_series_parquet;
 pub use series::{
