@@ -263,6 +263,38 @@ fn a_site_goes_with_everything_it_names_and_is_found_in_a_package() {
     assert!(opened.changes().contains(&Change::Changed { path: photo }), "{:?}", opened.changes());
 }
 
+/// A package with a backslash in a name, or of a case with a long one, could not be unpacked, and one with a
+/// colon not on Windows.
+#[cfg(unix)]
+#[test]
+fn a_package_has_names_that_every_system_can_hold() {
+    let folder = folder("portable");
+    let force = folder.join("Kanal\\run 12:30.csv");
+    fs::rename(force_file(&folder), &force).expect("renamed");
+    let mut case = case(&force);
+    case.name = "x".repeat(300);
+    let zip = folder.join("a.zip");
+    let packed = pack(&case, &zip, Existing::Refuse).expect("packed");
+    let names: Vec<&str> = packed.iter().map(|file| file.name.as_str()).collect();
+    assert_eq!(names, ["files/0/Kanal_run 12_30.csv"]);
+    let opened = CaseFile::load(&unpack(&zip, &folder.join("there")).expect("unpacked"));
+    let opened = opened.expect("loaded");
+    assert!(opened.changes().is_empty(), "{:?}", opened.changes());
+    assert_eq!(opened.name, case.name);
+    // The files of a folder are found by their names, so that they are not changed.
+    let set = folder.join("set");
+    fs::create_dir(&set).expect("a folder");
+    let inner = set.join("a\\b.csv");
+    fs::rename(&force, &inner).expect("renamed");
+    let check = CheckRequest { paths: vec![set], all: false, map: None };
+    let questions = vec![Request::from(check)];
+    let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
+    let case = CaseFile::new("a", variant);
+    let error = pack(&case, &folder.join("b.zip"), Existing::Refuse).expect_err("a backslash");
+    assert!(matches!(&error, CaseError::PackedName { path } if *path == inner), "{error}");
+    assert!(!folder.join("b.zip").exists());
+}
+
 /// A zip of these files, of which each has a name, a mode and a content.
 fn zip_of(path: &Path, entries: &[(&str, u32, &[u8])]) {
     let mut zip = zip::ZipWriter::new(fs::File::create(path).expect("a file"));

@@ -71,6 +71,12 @@ pub enum CaseError {
         /// The file.
         path: PathBuf,
     },
+    /// The name of a file is one that others find it by, and that no package can have.
+    #[error("{}: cannot be packed because of the backslash in its name; rename it", path.display())]
+    PackedName {
+        /// The file.
+        path: PathBuf,
+    },
     /// A package is no zip, or is damaged.
     #[error("{}: is no package of a case", path.display())]
     Zip {

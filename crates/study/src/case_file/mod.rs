@@ -29,6 +29,8 @@ mod on_disk;
 
 mod common;
 
+mod portable;
+
 mod package;
 
 mod run;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! NAME.impactlab          its paths lead into files/
-//! files/0/force.csv       the first file that it uses, under its own name
+//! files/0/force.csv       the first file that it uses, under its own name where every system can hold that
 //! files/1/fea/…           a folder, with everything in it
 //! ```
 //!
@@ -18,6 +18,7 @@ use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
 use crate::case_file::on_disk::sealed;
+use crate::case_file::portable::portable_name;
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
 use impactlab_core::data::write::{WriterLock, check_ending, check_inputs};
@@ -55,8 +56,8 @@ pub struct PackedFile {
 /// to ask ([`CaseFile::reach`]).
 ///
 /// # Errors
-/// [`CaseError::Missing`] for a file that is not there, [`CaseError::Zip`], [`CaseError::Data`], also for
-/// a name that does not end in `.zip`.
+/// [`CaseError::Missing`] for a file that is not there, [`CaseError::PackedName`] for one that could not be
+/// unpacked, [`CaseError::Zip`], [`CaseError::Data`], also for a name that does not end in `.zip`.
 pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<PackedFile>, CaseError> {
     if let Some(path) = case.missing_inputs().into_iter().next() {
         return Err(CaseError::Missing { path });
@@ -84,6 +85,10 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
             return Err(missing());
         }
         places.push((used, format!("./{place}")));
+    }
+    if let Some(PackedFile { path, .. }) = entries.iter().find(|file| !can_be_unpacked(&file.name))
+    {
+        return Err(CaseError::PackedName { path: path.clone() });
     }
     if entries.len() >= MAX_FILES {
         let why = format!("it would have more than {MAX_FILES} files");
@@ -134,10 +139,15 @@ fn placed_files(used: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, CaseError> {
     let mut placed: Vec<(PathBuf, String)> = Vec::new();
     let mut place = |path: &PathBuf, i: usize, folder: Option<&Path>| {
         let missing = || CaseError::Missing { path: path.clone() };
-        let below = folder.and_then(|folder| path.strip_prefix(folder).ok());
-        let below = below.or_else(|| path.file_name().map(Path::new)).ok_or_else(missing)?;
-        let parts: Option<Vec<&str>> = below.iter().map(|part| part.to_str()).collect();
-        let name = format!("{FILES}/{i}/{}", parts.ok_or_else(missing)?.join("/"));
+        let below = match folder.and_then(|folder| path.strip_prefix(folder).ok()) {
+            Some(below) => {
+                let parts: Option<Vec<&str>> = below.iter().map(|part| part.to_str()).collect();
+                parts.map(|parts| parts.join("/"))
+            }
+            // Nothing finds it by its name.
+            None => path.file_name().and_then(|name| name.to_str()).map(portable_name),
+        };
+        let name = format!("{FILES}/{i}/{}", below.ok_or_else(missing)?);
         if placed.iter().all(|(_, other)| *other != name) {
             placed.push((path.clone(), name));
         }
@@ -166,14 +176,14 @@ fn placed_files(used: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, CaseError> {
     Ok(placed)
 }
 
-/// A name as that of a file without its ending, such as of a case or of the title of a figure.
+/// A name as that of a file without its ending, such as of a case or of the title of a figure, on any system.
 pub fn file_stem(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
     let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     // A colon or comma before a space is no word.
     let plain = plain.replace("_ ", " ");
     let plain = plain.trim();
-    if plain.is_empty() { "case".to_owned() } else { plain.to_owned() }
+    if plain.is_empty() { "case".to_owned() } else { portable_name(plain) }
 }
 
 /// Unpacks a package into a new folder, whole or not at all, and returns the path of its case. What a killed
@@ -256,6 +266,11 @@ fn check_contents(
         [] => Err(none("it has no case".to_owned())),
         _ => Err(none("it has several cases".to_owned())),
     }
+}
+
+/// Whether [`unpack`] takes a file of this name.
+fn can_be_unpacked(name: &str) -> bool {
+    !parts_of(name).is_empty()
 }
 
 /// The parts of a name in a package; none if it leads anywhere but down.
