@@ -207,6 +207,15 @@ pub enum CliError {
         /// What the figure should show.
         quantity: &'static str,
     },
+    /// There is no motion for a file, since the record lacks what a simulation starts from.
+    #[error(
+        "{}: is not written, as there is no simulated motion; the notes of the answer say what the record lacks",
+        path.display()
+    )]
+    NotSimulated {
+        /// The file.
+        path: PathBuf,
+    },
     /// Nothing of what a figure shows is known.
     #[error("{name}: nothing is known of {channel} over time")]
     NothingToShow {

@@ -56,6 +56,24 @@ fn a_file_is_replaced_only_where_that_is_said() {
     assert!(error(&mut command(&SIMULATE, folder.path())).contains("is a folder"));
 }
 
+/// “written: motion.csv” was said, with exit code 0, of a file that was never made.
+#[test]
+fn a_motion_that_is_not_simulated_is_no_file_that_was_written() {
+    let folder = TempDir::new().unwrap();
+    let [log, out] = ["log.csv", "motion.csv"].map(|name| folder.path().join(name));
+    let row = |i: i32| format!("{},{},0,0,0\n", f64::from(i) * 0.01, f64::from(i) * 0.2);
+    let rows: String = (0..200).map(row).collect();
+    fs::write(&log, format!("time [s],x [m],y [m],yaw [deg],yaw rate [deg/s]\n{rows}")).unwrap();
+    let args = ["simulate", "--trajectory", text(&log)];
+    let said = error(&mut command(&args, &out));
+    assert!(said.contains("motion.csv: is not written, as there is no simulated motion"), "{said}");
+    let printed = command(&args, &out).arg("--json").output().unwrap().stdout;
+    let answer = json(&String::from_utf8(printed).unwrap());
+    assert!(answer["out"].is_null() && answer["name"] == "log", "{answer}");
+    assert!(!out.exists());
+    ok(program().args(args).output().unwrap());
+}
+
 /// A table was written under the name of a picture, and a package under that of a case.
 #[test]
 fn a_file_holds_what_its_name_says() {

@@ -252,16 +252,21 @@ fn simulate_one(
         check_ending(path, "csv")?;
     }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    let (report, out) = (&answer.report, args.out.as_deref());
-    if let (Some(path), Some(motion)) = (out, answer.analysis.written_motion()?) {
+    let motion = answer.analysis.written_motion()?;
+    let report = &answer.report;
+    let out = args.out.as_deref().filter(|_| motion.is_some());
+    if let (Some(path), Some(motion)) = (out, &motion) {
         let restrictions = report.caveats.text();
-        write_restricted_series_csv(path, existing, &motion, restrictions.as_deref())?;
+        write_restricted_series_csv(path, existing, motion, restrictions.as_deref())?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {
         print_answer(text, PrintedAnswer::from(report).written(out), args.units.into())
     })?;
-    Ok(Verdict::Clean)
+    match &args.out {
+        Some(path) if out.is_none() => Err(CliError::NotSimulated { path: path.clone() }),
+        _ => Ok(Verdict::Clean),
+    }
 }
 
 fn simulate_dataset(
