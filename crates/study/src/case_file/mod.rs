@@ -154,6 +154,13 @@ pub struct LogEntry {
     pub event: String,
 }
 
+impl LogEntry {
+    /// Whether it says how a variant came about or where it went, which names others.
+    fn is_of_variant(&self) -> bool {
+        self.event.starts_with("variant \"")
+    }
+}
+
 impl CaseFile {
     /// A case with one variant.
     pub fn new(name: impl Into<String>, variant: Variant) -> Self {

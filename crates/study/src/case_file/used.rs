@@ -205,7 +205,7 @@ impl CaseFile {
 
     /// The case with what some of its variants ask and nothing else: no other variant, nothing that is filled in
     /// and not asked, nothing of how the window draws it, and of its files those that these questions rest
-    /// on.
+    /// on. Without one of the variants, its log does not say how any came about, which names others.
     ///
     /// - `variants`: their names; all of them if there is none.
     ///
@@ -217,6 +217,9 @@ impl CaseFile {
         }
         let mut asked = self.clone();
         asked.variants.retain(|of| variants.is_empty() || variants.contains(&of.name));
+        if asked.variants.len() < self.variants.len() {
+            asked.log.retain(|entry| !entry.is_of_variant());
+        }
         for variant in &mut asked.variants {
             variant.unasked.clear();
             variant.view = serde_json::Value::Null;
@@ -366,6 +369,30 @@ mod tests {
         let variant = Variant { name: "a".to_owned(), questions, ..Variant::default() };
         let used = CaseFile::new("case", variant).used_paths();
         assert_eq!(used, [std::path::absolute("Cargo.toml").unwrap()]);
+    }
+
+    /// The report of one variant named the others in its log, also those that were removed.
+    #[test]
+    fn a_case_of_one_variant_says_nothing_of_the_others_in_its_log() {
+        let variant = |name: &str| Variant { name: name.to_owned(), ..Variant::default() };
+        let mut case = CaseFile::new("case", variant("too fast"));
+        case.variants.push(variant("braked"));
+        let events = [
+            "opened",
+            "variant \"braked\" copied from \"too fast\"",
+            "variant \"drunk\" removed",
+            "variant \"b\" renamed to \"braked\"",
+            "saved",
+        ];
+        events.iter().for_each(|event| case.note(*event));
+        let log = |variants: &[&str]| -> Vec<String> {
+            let variants: Vec<String> = variants.iter().map(|&name| name.to_owned()).collect();
+            let asked = case.asked(&variants).unwrap();
+            asked.log.into_iter().map(|entry| entry.event).collect()
+        };
+        assert_eq!(log(&["braked"]), ["opened", "saved"]);
+        assert_eq!(log(&["too fast", "braked"]), events);
+        assert_eq!(log(&[]), events);
     }
 
     /// `check` said nothing of evidence that a case has and that no question uses.
