@@ -38,6 +38,9 @@ pub enum CliError {
     /// Standard output is closed or full.
     #[error("the output cannot be written")]
     Output(#[from] io::Error),
+    /// JSON cannot hold the name of a file.
+    #[error("the name of a file is not Unicode, which JSON cannot hold; rename it")]
+    NotUnicode(#[source] serde_json::Error),
     /// A question has no answer.
     #[error(transparent)]
     Study(Box<StudyError>),

@@ -74,6 +74,24 @@ fn a_motion_that_is_not_simulated_is_no_file_that_was_written() {
     ok(program().args(args).output().unwrap());
 }
 
+/// Half of the JSON was printed, and then “the output cannot be written”.
+#[cfg(target_os = "linux")]
+#[test]
+fn json_is_printed_whole_or_not_at_all() {
+    let folder = TempDir::new().unwrap();
+    let name: &std::ffi::OsStr = std::os::unix::ffi::OsStrExt::from_bytes(b"a\xff.toml");
+    let path = folder.path().join(name);
+    fs::copy("assets/scenarios/pit_right_rear.toml", &path).unwrap();
+    let output = program().args(["impact", "--print-request"]).arg(&path).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(output.stdout.is_empty(), "{}", String::from_utf8_lossy(&output.stdout));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        said.contains("the name of a file is not Unicode") && said.contains("rename"),
+        "{said}"
+    );
+}
+
 /// A table was written under the name of a picture, and a package under that of a case.
 #[test]
 fn a_file_holds_what_its_name_says() {

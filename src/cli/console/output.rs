@@ -10,14 +10,14 @@ use crate::cli::console::within_line;
 /// Number of characters of a cell that are printed if another stands beside it.
 const MAX_CELL_CHARS: usize = 200;
 
-/// Prints a value as indented JSON and a line end.
+/// Prints a value as indented JSON and a line end, or nothing of it if JSON cannot hold it.
 pub(in crate::cli) fn print_json(
     out: &mut dyn Write,
     value: &impl Serialize,
 ) -> Result<(), CliError> {
-    serde_json::to_writer_pretty(&mut *out, value).map_err(io::Error::from)?;
-    writeln!(out)?;
-    Ok(())
+    let mut json = serde_json::to_vec_pretty(value).map_err(CliError::NotUnicode)?;
+    json.push(b'\n');
+    Ok(out.write_all(&json)?)
 }
 
 /// Prints rows as aligned columns, two blanks apart; a column of numbers only is set to the right.

@@ -2,7 +2,6 @@
 //! replaced, and a folder of results says what they were made from.
 
 use std::collections::HashSet;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::cli::CliError;
@@ -67,7 +66,7 @@ impl Targets {
     pub(super) fn ask(&mut self, request: &Request) -> Result<(), CliError> {
         self.refuse(&request.files_read())?;
         if self.has_folder {
-            self.record.request = serde_json::to_value(request).map_err(io::Error::from)?;
+            self.record.request = serde_json::to_value(request).map_err(CliError::NotUnicode)?;
             self.read.extend(request.files_read());
             self.digest(&request.input_files());
         }
