@@ -119,6 +119,26 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     assert!(!text.contains(folder.path().to_str().expect("text")), "it says where it was made");
 }
 
+/// A package that could not be made stood in the log, which reports print.
+#[test]
+fn the_log_has_the_packages_that_were_made_and_no_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = pit();
+    let is_packed = |state: &State| {
+        state.case.file.log.iter().any(|entry| entry.event.starts_with("packed into"))
+    };
+    let mut pack = |zip: PathBuf, packed: bool| {
+        apply(&mut harness, Command::Write(Output::PackedCase, zip));
+        step_until(&mut harness, "the package", |state| {
+            !state.session.tasks.is_writing() && (is_packed(state) || !packed)
+        });
+        harness.step();
+        assert_eq!(is_packed(state(&harness)), packed);
+    };
+    pack(folder.path().join("no folder/pit.zip"), false);
+    pack(folder.path().join("pit.zip"), true);
+}
+
 /// The questions of the first variant of a case file.
 fn questions_in(path: &Path) -> Vec<Request> {
     CaseFile::load(path).expect("a case").variants[0].questions.clone()

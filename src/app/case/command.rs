@@ -23,6 +23,8 @@ pub enum CaseCommand {
     Changed(PathBuf, Vec<Change>),
     /// Take the case that was written, or say why it was not.
     Saved(Result<Found<SavedCase>, String>),
+    /// Write down that the case was packed, or say why it was not.
+    Packed(Result<PackedCase, String>),
 }
 
 /// An action on the variants of the case.
@@ -94,4 +96,15 @@ pub struct SavedCase {
     pub(super) n_cases: u64,
     /// How many entries the log of the case had before the save was noted.
     pub(super) n_noted: usize,
+}
+
+/// A case that was packed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PackedCase {
+    /// What the log has of it.
+    pub(super) event: String,
+    /// What the user is told.
+    pub(super) message: String,
+    /// Which of the cases of the window it is, by `Session::n_cases`.
+    pub(super) n_cases: u64,
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 
-use crate::app::case::command::SavedCase;
+use crate::app::case::command::{PackedCase, SavedCase};
 use crate::app::case::{CaseCommand, OpenCase, VariantCommand};
 use crate::app::command::Command;
 use crate::app::dialog::{Dialog, Purpose};
@@ -49,6 +49,7 @@ impl State {
             }
             CaseCommand::Changed(..) => {}
             CaseCommand::Saved(result) => self.take_saved_case(result),
+            CaseCommand::Packed(result) => self.take_packed_case(result),
         }
     }
 
@@ -409,22 +410,33 @@ impl State {
         self.capture();
         // The file of the case goes to others, the folders of this machine do not.
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        self.case.file.note(format!("packed into {name}"));
-        let file = self.case.file.clone();
-        let key = TaskKey::Write(path.clone());
+        let event = format!("packed into {name}");
+        let (mut file, n_cases) = (self.case.file.clone(), self.session.n_cases);
+        file.note(event.as_str());
         self.session.tasks.start(
-            key,
+            TaskKey::Write(path.clone()),
             move |_| {
                 let files = pack(&file, &path, existing).map_err(|error| error_chain(&error))?;
                 let from = |file: &PackedFile| file.path.display().to_string();
-                let files: Vec<String> = files.iter().map(from).collect();
-                Ok(format!("{} written, with the case and {}", path.display(), listed(&files)))
+                let files = listed(&files.iter().map(from).collect::<Vec<_>>());
+                let message = format!("{} written, with the case and {files}", path.display());
+                Ok(PackedCase { event, message, n_cases })
             },
-            |packed| match packed {
-                Ok(text) => Command::Say(Severity::Info, text),
-                Err(why) => Command::Say(Severity::Error, why),
-            },
+            |packed| Command::Case(CaseCommand::Packed(packed)),
         );
+    }
+
+    /// Writes down that the case was packed. The log says nothing of a package that could not be made.
+    fn take_packed_case(&mut self, packed: Result<PackedCase, String>) {
+        match packed {
+            Ok(PackedCase { event, message, n_cases }) => {
+                if n_cases == self.session.n_cases {
+                    self.case.file.note(event);
+                }
+                self.say(Severity::Info, message);
+            }
+            Err(why) => self.say(Severity::Error, why),
+        }
     }
 
     /// Receives the case that was written. What was changed since is not in its file.
