@@ -37,6 +37,9 @@ fn each_format_is_written_and_nothing_is_replaced_unasked() {
             vec![],
             "expected a name that ends in .dxf, .kml, .geojson, .glb, .csv or .parquet, or --format",
         ),
+        // A table was written under the name of a scene.
+        ("m.glb", vec!["--format", "motion"], "expected a name that ends in .csv"),
+        ("p.dxf", vec!["--format", "hve-pulse"], "expected a name that ends in .txt"),
         ("b.glb", vec!["--at", "1"], "leave it out, or write a drawing (.dxf)"),
         ("b.dxf", vec!["--at", "900"], "--at is 900 s, expected between"),
     ] {

@@ -21,6 +21,19 @@ fn median(report: &Value, place: &str) -> f64 {
     report.pointer(&format!("{place}/median")).unwrap().as_f64().unwrap()
 }
 
+/// A table was written under the name of a picture.
+#[test]
+fn the_path_has_the_name_of_a_table() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "report.csv", REPORT);
+    let path = folder.path().join("path.png");
+    let args = ["replay", text(&file), "--steering-ratio", "14.5", "--write", text(&path)];
+    let output = program().args(args).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("path.png: cannot be made; expected a name that ends in .csv"), "{said}");
+    assert!(!output.status.success() && !path.exists());
+}
+
 /// A report of a recorder becomes a state at the contact, a path as a file, and the same by its question.
 #[test]
 fn a_report_becomes_a_state_at_the_contact_and_a_path() {

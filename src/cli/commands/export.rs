@@ -11,6 +11,7 @@ use crate::cli::commands::render_reconstruction::{ExportedReconstruction, export
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{OverwriteArg, UnitsArg, number};
+use impactlab_core::data::write::check_ending;
 use impactlab_core::data::{
     write_bytes, write_restricted_series_csv, write_restricted_series_parquet,
     write_restricted_table,
@@ -106,7 +107,10 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     let format = match args.format {
-        Some(format) => format,
+        Some(format) => {
+            check_name(&args.out, format)?;
+            format
+        }
         None => format_of(&args.out)?,
     };
     if format != FormatArg::Dxf && !args.at.is_empty() {
@@ -217,6 +221,25 @@ fn format_of(path: &Path) -> Result<FormatArg, CliError> {
         Some("csv") => Ok(FormatArg::Motion),
         Some("parquet") => Ok(FormatArg::Parquet),
         _ => Err(CliError::ExportKind { path: path.to_owned() }),
+    }
+}
+
+/// Returns an error if a file would have the name of another format than that of its content.
+fn check_name(path: &Path, format: FormatArg) -> Result<(), CliError> {
+    let ending = match format {
+        FormatArg::Dxf => "dxf",
+        FormatArg::Kml => "kml",
+        FormatArg::Geojson => "geojson",
+        FormatArg::Glb => "glb",
+        FormatArg::Motion => "csv",
+        FormatArg::Parquet => "parquet",
+        FormatArg::HvePulse | FormatArg::HveMotion => "txt",
+    };
+    match format_of(path) {
+        // Those for HVE are tables, too.
+        Ok(FormatArg::Motion) if ending == "txt" => Ok(()),
+        Ok(named) if named != format => Ok(check_ending(path, ending)?),
+        _ => Ok(()),
     }
 }
 

@@ -11,6 +11,7 @@ use crate::cli::options::{
     AXLES, OverwriteArg, SIDES, UnitsArg, VehicleArg, count, number, one_value_of,
 };
 use crate::cli::text::{PrintedAnswer, print_answer};
+use impactlab_core::data::write::check_ending;
 use impactlab_core::data::{RecordedSide, write_restricted_series_csv};
 use impactlab_core::ranges::{
     HEADING, POSITION, RECORDED_SPEED_SIGMA, REPLAY_DRAWS, REPLAY_START, ROAD_FRICTION,
@@ -151,6 +152,9 @@ pub(in crate::cli) fn run(
     let request = args.record.request();
     let (out, existing) = (args.write.as_deref(), args.overwrite.into());
     console.check_target(out, existing)?;
+    if let Some(path) = out.filter(|_| !console.print_request) {
+        check_ending(path, "csv")?;
+    }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let report = &answer.report;
     if let Some(path) = out {
