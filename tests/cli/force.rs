@@ -10,6 +10,7 @@ use std::process::{Command, Output};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::badges::badges;
 use crate::program::{SCENARIO, closed_pipe, json, kill_at_checkpoint, ok, program};
 
 const DATA: &str = "datasets/fea";
@@ -75,7 +76,12 @@ fn train_kill_resume_predict() {
 
     files_of_a_prediction(&whole, folder.path());
     let evaluate = ["evaluate", "force", "--data", DATA, "--json", "--model"];
-    let measured = json(&ok(program().args(evaluate).arg(&whole).output().unwrap()));
+    let out = folder.path().join("evaluation");
+    let mut evaluation = program();
+    evaluation.args(evaluate).arg(&whole).arg("--out").arg(&out);
+    let measured = json(&ok(evaluation.output().unwrap()));
+    assert!(out.join("evaluation.json").is_file());
+    assert_eq!(badges(&measured, "energy_gain").len(), 0, "{measured}");
     assert_eq!((&measured["n_test"], &measured["n_trained_on"]), (&25.into(), &0.into()));
     for who in [&measured, &measured["baselines"]["pulse"], &measured["baselines"]["nearest"]] {
         let error = who["overall"]["rmse_over_peak"]["mean"].as_f64().unwrap();
