@@ -187,6 +187,10 @@ fn report(state: &State) -> serde_json::Value {
 #[test]
 fn a_stiffness_that_is_typed_is_that_of_the_forecast_and_of_the_saved_case() {
     let mut harness = with_forms();
+    // Few motions follow from the stiffness as many do.
+    harness.state_mut().state_mut().project.predict_motion.draws = 20;
+    harness.run_steps(4);
+    step_until(&mut harness, "the forecast of few motions", is_forecast);
     let by_class = report(state(&harness));
     assert_eq!(front(state(&harness)), [None; 2]);
     tick_front(&mut harness, 1);
