@@ -88,6 +88,16 @@ pub fn staged() -> &'static (tempfile::TempDir, CaseFile, ReportDocument, CaseRe
     })
 }
 
+/// The report of a collision of which little more is known than a position, asked once for all tests.
+pub fn position_alone() -> &'static ReportDocument {
+    static DOCUMENT: OnceLock<ReportDocument> = OnceLock::new();
+    DOCUMENT.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let case = reconstruction_of("docs/guide/examples/position_alone.toml", folder.path());
+        report(&case, &english()).0
+    })
+}
+
 pub fn impact_case(name: &str, notes: &str) -> CaseFile {
     let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
     let question = ImpactRequest::new(scenario);

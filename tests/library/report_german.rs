@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{Block, Language, Paper, ReportDocument};
@@ -77,19 +78,27 @@ fn an_english_word_is_seen() {
     assert!(!is_english("dreht um etwa 180° nach rechts; „unsprung and links“"));
 }
 
+/// The German report of the example, asked once for all tests.
+pub fn german_example() -> &'static ReportDocument {
+    static EXAMPLE: OnceLock<ReportDocument> = OnceLock::new();
+    EXAMPLE.get_or_init(|| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
+        let text = fs::read_to_string(&path).expect("the example");
+        let text = NOTES.iter().fold(text, |text, (english, german)| {
+            assert!(text.contains(english), "{english} is a name of the example");
+            text.replace(english, german)
+        });
+        let case = CaseFile::parse(&text, &path).expect("a case");
+        report(&case, &settings(Language::De, UnitSystem::Si, Paper::A4)).0
+    })
+}
+
 #[test]
 fn a_german_report_of_the_example_has_no_english_words() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
-    let text = fs::read_to_string(&path).expect("the example");
-    let text = NOTES.iter().fold(text, |text, (english, german)| {
-        assert!(text.contains(english), "{english} is a name of the example");
-        text.replace(english, german)
-    });
-    let case = CaseFile::parse(&text, &path).expect("a case");
-    let (document, _) = report(&case, &settings(Language::De, UnitSystem::Si, Paper::A4));
-    assert_eq!(english(&document), Vec::<String>::new());
+    let document = german_example();
+    assert_eq!(english(document), Vec::<String>::new());
     // The signature stood alone on a third page.
-    assert_two_pages(&document, ["BeweisfrageundAntwort", "Anhang", "10ProtokolldesFalls"]);
+    assert_two_pages(document, ["BeweisfrageundAntwort", "Anhang", "10ProtokolldesFalls"]);
 }
 
 #[test]

@@ -17,7 +17,7 @@ use impactlab_study::{
     ScenarioChoice,
 };
 
-use crate::report::{english, impact_case, pit, report, settings, staged};
+use crate::report::{english, impact_case, pit, position_alone, report, settings, staged};
 
 fn opinion(document: &ReportDocument) -> &[Block] {
     assert_eq!(document.sections[0].kind, SectionKind::Opinion);
@@ -144,15 +144,7 @@ fn a_report_names_no_file_that_its_questions_do_not_rest_on() {
 /// Where the figures over all courses of events may be true of none, the opinion had no others.
 #[test]
 fn each_course_of_events_has_its_probability_and_its_speed_in_the_opinion() {
-    let evidence = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let evidence = evidence.join("docs/guide/examples/position_alone.toml");
-    let question = ReconstructRequest {
-        particles: 150,
-        ..ReconstructRequest::new(EvidenceChoice::File(evidence))
-    };
-    let variant = Variant { questions: vec![question.into()], ..Variant::default() };
-    let (document, _) = report(&CaseFile::new("place", variant), &english());
-    let courses = tables(&document)[0];
+    let courses = tables(position_alone())[0];
     assert!(courses.caption.starts_with("Courses of events"), "{}", courses.caption);
     assert!(courses.rows.len() > 1, "{:?}", courses.rows);
     for row in &courses.rows {

@@ -8,7 +8,9 @@ use impactlab_document::report::ReportDocument;
 use impactlab_reconstruct::evidence::{Edr, Evidence, Measured};
 use impactlab_study::Report;
 
-use crate::report::{assert_says, count_of, english, reconstruction_of, report, staged, texts};
+use crate::report::{
+    assert_says, count_of, english, position_alone, reconstruction_of, report, staged, texts,
+};
 
 #[test]
 fn a_reconstruction_tells_evidence_courses_budget_and_prior() {
@@ -48,12 +50,10 @@ fn a_reconstruction_tells_evidence_courses_budget_and_prior() {
 /// That the cars meet again in most motions, and that this was not followed, was a note of the annex.
 #[test]
 fn a_reconstruction_that_leaves_later_contacts_out_says_so_in_the_opinion() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let case = reconstruction_of("docs/guide/examples/position_alone.toml", folder.path());
     let says = |document: &ReportDocument| {
         texts(document).iter().any(|of| of.contains("Later contacts of this case"))
     };
-    assert!(says(&report(&case, &english()).0));
+    assert!(says(position_alone()));
     let (_, _, document, answers) = staged();
     let Some(Report::Reconstruct(report)) = answers.variants[0].reports().next() else {
         panic!("a reconstruction");
@@ -70,15 +70,13 @@ fn courses_that_no_evidence_decides_between_are_said_to_be_those_of_the_assumpti
         Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/guide/examples/position_alone.toml");
     let mut evidence = Evidence::load(&path).expect("evidence");
     let said = "follow from the assumptions alone";
-    let told = |evidence: &Evidence| {
-        let path = folder.path().join("recorder.toml");
-        fs::write(&path, evidence.to_toml()).expect("written");
-        let case = reconstruction_of(path.to_str().expect("text"), folder.path());
-        texts(&report(&case, &english()).0).iter().any(|text| text.contains(said))
-    };
-    assert!(!told(&evidence), "a position is evidence");
+    let is_told = |of: &ReportDocument| texts(of).iter().any(|text| text.contains(said));
+    assert!(!is_told(position_alone()), "a position is evidence");
     evidence.rest = None;
     let speed_before_m_s = Some(Measured { value: 15.0, sigma: 0.5 }.into());
     evidence.edr = Some(Edr { speed_before_m_s, ..Edr::default() });
-    assert!(told(&evidence));
+    let path = folder.path().join("recorder.toml");
+    fs::write(&path, evidence.to_toml()).expect("written");
+    let case = reconstruction_of(path.to_str().expect("text"), folder.path());
+    assert!(is_told(&report(&case, &english()).0));
 }
