@@ -40,9 +40,9 @@ fn both_cars_of_a_recorded_pair_are_forecast_beside_their_records() {
             ["forecast", "recorded"].map(|which| case["impulse_n_s"][which].as_f64().unwrap());
         assert!((0.4..2.5).contains(&(forecast / recorded)), "{case}");
     }
-    assert_eq!(found["cases"], evaluated(&["--only", "d064", "d050"])["cases"], "same seed");
-    let other = evaluated(&["--only", "d064", "--seed", "1"]);
     let of_seed_0 = cases.iter().find(|case| case["case"] == "d064").unwrap();
+    assert_eq!(&evaluated(&["--only", "d064"])["cases"][0], of_seed_0, "same seed");
+    let other = evaluated(&["--only", "d064", "--seed", "1"]);
     assert_ne!(other["cases"][0]["struck"], of_seed_0["struck"], "the seed decides");
 }
 

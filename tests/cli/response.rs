@@ -41,6 +41,8 @@ struct Workplace {
     config: PathBuf,
     pretrained: PathBuf,
     tuned: PathBuf,
+    /// The evaluation of the tuned model.
+    evaluated: Value,
 }
 
 fn fine_tune(place: (&Path, &Path), model: &Path) -> Command {
@@ -68,7 +70,8 @@ fn workplace() -> &'static Workplace {
         assert_eq!(report["train"].as_array().unwrap().len(), 4);
         assert_eq!((&report["n_test"], &report["epochs"]), (&Value::from(25), &Value::from(14)));
         assert_eq!(report["latents"]["n_calibrated"], 4);
-        Workplace { folder, config, pretrained, tuned }
+        let evaluated = evaluate(&tuned);
+        Workplace { folder, config, pretrained, tuned, evaluated }
     })
 }
 
@@ -90,7 +93,7 @@ fn a_killed_fine_tuning_goes_on_to_the_same_model() {
     let start = (place.config.as_path(), place.pretrained.as_path());
     kill_at_checkpoint(&mut fine_tune(start, &killed), &killed);
     ok(fine_tune(start, &killed).arg("--resume").output().unwrap());
-    assert_eq!(errors(&evaluate(&killed)), errors(&evaluate(&place.tuned)));
+    assert_eq!(errors(&evaluate(&killed)), errors(&place.evaluated));
     let other = fine_tune(start, &killed).args(["--resume", "--seed", "9"]).output().unwrap();
     let message = String::from_utf8(other.stderr).unwrap();
     assert!(message.contains("the training to resume had another"), "{message}");
@@ -99,8 +102,7 @@ fn a_killed_fine_tuning_goes_on_to_the_same_model() {
 #[test]
 fn evaluation_and_comparison_have_their_keys() {
     let place = workplace();
-    let evaluated = evaluate(&place.tuned);
-    assert_eq!(evaluated["test"].as_array().unwrap().len(), 25);
+    assert_eq!(place.evaluated["test"].as_array().unwrap().len(), 25);
     let out = place.folder.path().join("comparison");
     let mut command = program();
     command.args(["compare", "--data", DATA, "--trajectories", "3", "--choices", "2", "--json"]);
