@@ -207,7 +207,7 @@ fn simulated_cars_lie_in_their_intervals() {
     for case in 0..12 {
         let (evidence, true_m_s) = simulated(case);
         let target = target(&evidence);
-        let posterior = Posterior::new(&target, &sampled(&target, 120, case));
+        let posterior = Posterior::new(&target, &sampled(&target, 60, case));
         let mut speeds = posterior.values(ReconstructedQuantity::CarSpeed);
         speeds.sort_by(f64::total_cmp);
         let [low, high] = [0.05, 0.95].map(|share| quantile_of_sorted(&speeds, share).unwrap());
