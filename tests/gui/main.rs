@@ -9,6 +9,7 @@ mod conditioning;
 mod controls;
 mod density_gpu;
 mod empty;
+mod few_cases;
 mod film;
 mod film_camera;
 mod force_network;
