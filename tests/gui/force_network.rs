@@ -15,6 +15,7 @@ use impactlab_networks::force::{ForceCase, ForceConfig, ForceScenario, train};
 use impactlab_networks::learning::{ModelFile, TrainSettings, TrainingSet};
 use impactlab_study::{ConfigChoice, ForceEvaluation};
 
+use crate::few_cases::few_cases;
 use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 use crate::pictures::save;
 use crate::settings::{QUICK_CRUSH, SMALL_FORCE};
@@ -26,6 +27,10 @@ epochs = 8
 learning_rate = 3e-3
 checkpoint_epochs = 1
 ";
+
+/// Cases of a training of which nothing but its course in the window is looked at: its physics is fitted before
+/// the first epoch, and takes as long as there are cases.
+const N_CASES: usize = 24;
 
 struct Small {
     folder: tempfile::TempDir,
@@ -187,10 +192,8 @@ fn the_scenario_is_predicted_and_undone() {
 fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     let folder = tempfile::tempdir().expect("a folder");
     let state_file = folder.path().join("state.json");
-    let mut harness = open_with(
-        &[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")],
-        Some(state_file.clone()),
-    );
+    let forces = few_cases(folder.path(), "fea", N_CASES);
+    let mut harness = open_with(&[forces.as_str()], Some(state_file.clone()));
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::Training));
     {
@@ -247,8 +250,8 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
 
 #[test]
 fn a_running_training_learns_from_the_data_in_use_and_shows_its_own_losses_alone() {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/");
-    let paths = ["fea-road", "fea"].map(|name| format!("{folder}{name}"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let paths = ["fea-road", "fea"].map(|name| few_cases(folder.path(), name, N_CASES));
     let mut harness = open(&[&*paths[0], &*paths[1]]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::List(paths[1].as_str().into()));
@@ -278,7 +281,9 @@ fn a_running_training_learns_from_the_data_in_use_and_shows_its_own_losses_alone
 /// A trial of a few epochs took the place of the shipped network in the variant, and its answer moved.
 #[test]
 fn a_training_changes_no_answer_about_a_scenario_until_it_is_put_into_use() {
-    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let forces = few_cases(folder.path(), "fea", N_CASES);
+    let mut harness = open(&[forces.as_str()]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Select(Subject::Scenario));
     apply(&mut harness, Command::Show(Pane::Training));
