@@ -10,8 +10,9 @@ use impactlab::app::{
     App, ArchiveEntry, ArchiveKind, Command, ComparisonCommand, CostPlace, Leaving, Network,
     Output, Pane, State, TrainingCommand, TrainingMode,
 };
-use impactlab_study::{ConfigChoice, ModelChoice};
+use impactlab_study::{ConfigChoice, ForceEvaluation, ModelChoice};
 
+use crate::few_cases::few_cases;
 use crate::harness::{apply, is_idle, open_with, state, step_until};
 use crate::pictures::save;
 use crate::settings::{SMALL_FORCE, SMALL_RESPONSE};
@@ -309,7 +310,11 @@ fn entry_is_cancelled(harness: &Harness<'_, App>) -> bool {
 #[test]
 fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     let desk = Desk::new();
-    let mut harness = desk.open(&[MOTIONS, FORCES]);
+    let motions = few_cases(desk.folder.path(), "trajectories-fea", 16);
+    let forces = few_cases(desk.folder.path(), "fea", 24);
+    let uncalibrated = SMALL_RESPONSE.replace("folds = 2", "folds = 0");
+    fs::write(desk.path("response.toml"), uncalibrated).expect("a file");
+    let mut harness = desk.open(&[motions.as_str(), forces.as_str()]);
     step_until(&mut harness, "the data", is_idle);
     {
         let form = &mut harness.state_mut().state_mut().project.networks.compare;
@@ -349,14 +354,16 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     // The texts, since the error at a time that was not reached is no number.
     let again = state(&harness).session.response.comparison.report().expect("one");
     assert_eq!(format!("{again:?}"), format!("{compared:?}"));
-    harness.get_by_label_contains("25 trajectories that no model has seen");
+    let n_test = compared.comparison.test.len();
+    harness.get_by_label_contains(&format!("{n_test} trajectories that no model has seen"));
     open(&mut harness, ArchiveKind::ForceEvaluation);
     step_until(&mut harness, "the evaluation", |state| {
         state.session.force.evaluation.ok().is_some()
     });
     let again = state(&harness).session.force.evaluation.ok().expect("one");
     assert_eq!(format!("{:?}", again.report), format!("{evaluated:?}"));
-    harness.get_by_label_contains("on 25 cases of fea");
+    let ForceEvaluation::Cases(report) = &evaluated.report else { panic!("folds") };
+    harness.get_by_label_contains(&format!("on {} cases of fea", report.n_test));
     harness.get_by_label_contains("The plots of single cases are not kept");
 }
 

@@ -10,6 +10,7 @@ use impactlab::app::{
 };
 use impactlab_study::{ConfigChoice, ForceSource, ModelChoice};
 
+use crate::few_cases::few_cases;
 use crate::harness::{apply, is_idle, open, open_with, state, step_until};
 use crate::pictures::save;
 use crate::settings::SMALL_RESPONSE;
@@ -193,8 +194,10 @@ fn type_numbers(harness: &mut Harness<'_, App>, numbers: &str) {
 fn models_are_compared_saved_and_opened_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = folder.path().join("small.toml");
-    std::fs::write(&config, SMALL_RESPONSE).expect("a file");
-    let mut harness = open(&[DATA]);
+    let uncalibrated = SMALL_RESPONSE.replace("folds = 2", "folds = 0");
+    std::fs::write(&config, uncalibrated).expect("a file");
+    let trajectories = few_cases(folder.path(), "trajectories-fea", 16);
+    let mut harness = open(&[trajectories.as_str()]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::ModelComparison));
     {
@@ -214,8 +217,8 @@ fn models_are_compared_saved_and_opened_again() {
     harness.run_steps(2);
     step_until(&mut harness, "the comparison", is_over);
     let report = state(&harness).session.response.comparison.report().expect("a result");
-    assert_eq!((report.comparison.models.len(), report.comparison.test.len()), (7, 25));
-    harness.get_by_label_contains("25 trajectories that no model has seen");
+    assert_eq!((report.comparison.models.len(), report.comparison.test.len()), (7, 4));
+    harness.get_by_label_contains("4 trajectories that no model has seen");
     harness.run_steps(4);
     save(&mut harness, "compare.png");
     let out = folder.path().join("saved");
