@@ -78,6 +78,35 @@ fn check_broken_off(
     assert!(ended.population().is_none());
 }
 
+/// Broken off in any of the fits after the epochs, it is the network of the last epoch, which knows one kind of
+/// car. The network is a small one, since nobody looks at what it has learned.
+fn check_broken_off_in_a_fit(set: &TrainingSet<ResponseCase>, settings: &ResponseTrainSettings) {
+    let mut settings = settings.clone();
+    let network = &mut settings.config.network;
+    (network.encoder, network.trunk) = (vec![8], vec![8]);
+    (network.token_encoder, network.attention_heads) = ([4; 3], 2);
+    let mut go_on = |_: &TrainingReport| ControlFlow::Continue(());
+    let start = fine_tune(None, set, &settings, &mut go_on).expect("a start");
+    let cut_after = |n_before: usize| {
+        let mut n_fits = 0;
+        let mut cut = |progress: &TrainingReport| match progress {
+            TrainingReport::Fit(_) if n_fits == n_before => ControlFlow::Break(()),
+            TrainingReport::Fit(_) => {
+                n_fits += 1;
+                ControlFlow::Continue(())
+            }
+            TrainingReport::Epoch(_) => ControlFlow::Continue(()),
+        };
+        let ended = train_fleet(&start, set, &settings, &mut cut).expect("a model");
+        (n_fits, ended.population().is_some())
+    };
+    let (n_fits, knows_cars) = cut_after(usize::MAX);
+    assert!(n_fits > 25 && knows_cars, "{n_fits}");
+    for n_before in [0, 6, n_fits - 1] {
+        assert_eq!(cut_after(n_before), (n_before, false), "of {n_fits}");
+    }
+}
+
 #[test]
 fn a_fleet_is_learned_from_saved_and_read_again() {
     let mut config = ResponseConfig::default();
@@ -119,20 +148,7 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     let last = fits.last().expect("what is learned after the epochs");
     assert!(fits.len() > 25 && last.done == last.n_steps, "{last:?} of {} reports", fits.len());
     check_broken_off(&start, &set, &settings);
-    // Broken off at any of these, it is the network of the last epoch, which knows one kind of car.
-    for n_before in [0, 6, fits.len() - 1] {
-        let mut n_fits = 0;
-        let mut cut = |progress: &TrainingReport| match progress {
-            TrainingReport::Fit(_) if n_fits == n_before => ControlFlow::Break(()),
-            TrainingReport::Fit(_) => {
-                n_fits += 1;
-                ControlFlow::Continue(())
-            }
-            TrainingReport::Epoch(_) => ControlFlow::Continue(()),
-        };
-        let ended = train_fleet(&start, &set, &settings, &mut cut).expect("a model");
-        assert!(n_fits == n_before && ended.population().is_none(), "{n_fits} of {n_before}");
-    }
+    check_broken_off_in_a_fit(&set, &settings);
     let population = model.population().expect("how cars differ");
     assert_eq!(population.cars().len(), 4);
     check_saved(&model, &set.train[0]);
