@@ -33,9 +33,19 @@ fn scenario<'a>(harness: &'a mut Harness<'_, App>) -> &'a mut Scenario {
     harness.state_mut().state_mut().project.scenario_mut().expect("a scenario")
 }
 
-/// The window with the PIT, all forecasts answered.
+/// The window with the PIT as it is opened, all forecasts answered.
+fn pit_as_opened() -> Harness<'static, App> {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_answered);
+    harness
+}
+
+/// The window with the PIT and a forecast of few draws, for what does not depend on how many there are.
 fn pit() -> Harness<'static, App> {
     let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the scenario", is_idle);
+    harness.state_mut().state_mut().project.predict_motion.draws = 20;
+    harness.run_steps(4);
     step_until(&mut harness, "the forecast", is_answered);
     harness
 }
@@ -76,8 +86,6 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("pit.impactlab");
     let mut harness = pit();
-    // Equal numbers are equal numbers, however few motions they come from.
-    harness.state_mut().state_mut().project.predict_motion.draws = 20;
     let speed = |state: &State| state.project.scenario().expect("a scenario").struck.vx_world_m_s;
     let before = speed(state(&harness));
     let mut shown = Vec::new();
@@ -166,7 +174,7 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
     for (from, to) in [
         ("\"restitution\": 0.15", "\"restitution\": 0.35"),
         ("\"duration_s\": 4.0", "\"duration_s\": 3.0"),
-        ("\"draws\": 200", "\"draws\": 20"),
+        ("\"draws\": 20", "\"draws\": 12"),
     ] {
         assert_eq!(text.matches(from).count(), 1, "{from} stands once in {text}");
         text = text.replace(from, to);
@@ -178,7 +186,7 @@ fn questions_that_were_edited_in_the_file_are_those_of_the_window() {
     let mut harness = saved_again(&one, &two);
     let project = &state(&harness).project;
     assert_eq!(project.scenario().expect("a scenario").contact.restitution, Some(0.35));
-    assert_eq!((project.simulate.duration_s, project.predict_motion.draws), (3.0, 20));
+    assert_eq!((project.simulate.duration_s, project.predict_motion.draws), (3.0, 12));
     assert_eq!(questions_in(&two), edited);
     assert_eq!(answers_of(&two), answers);
 
@@ -369,7 +377,7 @@ fn a_case_that_reads_elsewhere_is_asked_about_once() {
     let questions = vec![check.into()];
     let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
     CaseFile::new("a", variant).save(&path, Existing::Refuse).expect("written");
-    let mut harness = pit();
+    let mut harness = pit_as_opened();
     let open = Command::Open(vec![path.clone()]);
     apply(&mut harness, open.clone());
     harness.run_steps(3);

@@ -7,7 +7,7 @@ use impactlab_core::uncertainty::{CaveatKind, Caveats};
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_study::{ForceSource, ModelChoice};
 
-use super::{is_answered, pit, scenario, state};
+use super::{is_answered, pit_as_opened, scenario, state};
 use crate::harness::{apply, step_until};
 
 fn forecast_caveats<'a>(harness: &'a Harness<'_, App>) -> &'a Caveats {
@@ -16,7 +16,7 @@ fn forecast_caveats<'a>(harness: &'a Harness<'_, App>) -> &'a Caveats {
 
 #[test]
 fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
-    let mut harness = pit();
+    let mut harness = pit_as_opened();
     let chain = state(&harness).chain();
     let titles: Vec<&str> = chain.iter().map(|link| link.title).collect();
     assert_eq!(titles, ["Scenario", "Impact", "Force", "Motion", "Outcome"]);

@@ -7,7 +7,7 @@ use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Pane, VariantCommand};
 use impactlab_study::case_file::CaseFile;
 
-use super::{is_answered, pit, save_as, scenario, state, variant};
+use super::{is_answered, pit, pit_as_opened, save_as, scenario, state, variant};
 use crate::harness::{apply, step_until};
 
 /// Clicks the last field of a name and types into it.
@@ -33,7 +33,7 @@ fn type_into(harness: &mut Harness<'_, App>, name: &str) {
 fn the_table_of_variants_has_notes_what_differs_and_how_likely_it_spins() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("pit.impactlab");
-    let mut harness = pit();
+    let mut harness = pit_as_opened();
     variant(&mut harness, VariantCommand::Duplicate);
     scenario(&mut harness).striking.vy_world_m_s *= 1.3;
     harness.run_steps(2);
