@@ -7,7 +7,10 @@ use impactlab::app::{App, Command, Group, Output, Pane, Subject, VariantCommand,
 use impactlab_core::vehicle::{Braking, DataSheet, Ending, LibraryVehicle, SheetQuantity};
 use impactlab_study::{MotionSource, VehicleChoice};
 
-use crate::harness::{apply, is_idle, open, open_with, state, step_until};
+use crate::harness::{
+    apply, ask_few_draws, is_forecast, is_idle, open, open_with, open_with_few_draws, state,
+    step_until,
+};
 use crate::pictures::save;
 
 const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
@@ -16,11 +19,6 @@ const FEA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
 fn contents_of(harness: &Harness<'_, App>) -> Vec<impactlab::app::ContentsEntry> {
     let state = state(harness);
     state.contents(&state.chain())
-}
-
-fn is_forecast(state: &impactlab::app::State) -> bool {
-    let forecast = &state.session.response.forecast;
-    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
 }
 
 #[test]
@@ -99,8 +97,7 @@ fn the_ways_to_begin_are_shown_at_the_first_start_alone() {
 
 #[test]
 fn the_contents_name_what_is_missing_and_lead_to_it() {
-    let mut harness = open(&[SCENARIO]);
-    step_until(&mut harness, "the forecast", is_forecast);
+    let mut harness = open_with_few_draws(SCENARIO);
     let contents = contents_of(&harness);
     for &group in Group::ALL {
         assert!(contents.iter().any(|entry| entry.group == group), "{group:?}");
@@ -125,8 +122,7 @@ fn the_contents_name_what_is_missing_and_lead_to_it() {
 /// A line that came with the answer pushed them away from the pointer.
 #[test]
 fn the_tools_of_the_scene_stay_where_they_are_when_an_answer_comes() {
-    let mut harness = open(&[SCENARIO]);
-    step_until(&mut harness, "the forecast", is_forecast);
+    let mut harness = open_with_few_draws(SCENARIO);
     let top = |harness: &Harness<'_, App>| harness.get_by_label("Measure").rect().top();
     let before = top(&harness);
     let project = &mut harness.state_mut().state_mut().project;
@@ -142,8 +138,7 @@ fn the_tools_of_the_scene_stay_where_they_are_when_an_answer_comes() {
 
 #[test]
 fn variants_are_drawn_over_each_other_and_the_choice_is_kept() {
-    let mut harness = open(&[SCENARIO]);
-    step_until(&mut harness, "the forecast", is_forecast);
+    let mut harness = open_with_few_draws(SCENARIO);
     apply(&mut harness, Command::Variant(VariantCommand::Duplicate));
     let edited = harness.state_mut().state_mut().project.scenario_mut().expect("a scenario");
     edited.striking.vy_world_m_s *= 1.3;
@@ -175,6 +170,7 @@ fn variants_are_drawn_over_each_other_and_the_choice_is_kept() {
 fn a_vehicle_is_edited_in_a_form_and_the_answer_is_that_of_its_saved_file() {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the simulation", is_idle);
+    ask_few_draws(&mut harness);
     apply(&mut harness, Command::Show(Pane::Vehicle));
     let id = LibraryVehicle::ALL[0].id();
     harness.state_mut().state_mut().project.simulate.vehicle = VehicleChoice::Preset(id.to_owned());

@@ -24,7 +24,7 @@ use impactlab_core::vehicle::{Braking, Ending};
 use impactlab_study::case_file::{CaseFile, Variant, unpack};
 use impactlab_study::{CheckRequest, ForceSource, Library, ModelChoice, Report, Request};
 
-use crate::harness::{apply, is_idle, open, open_with, state, step_until};
+use crate::harness::{apply, ask_few_draws, is_idle, open, open_with, state, step_until};
 
 const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 
@@ -44,8 +44,7 @@ fn pit_as_opened() -> Harness<'static, App> {
 fn pit() -> Harness<'static, App> {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the scenario", is_idle);
-    harness.state_mut().state_mut().project.predict_motion.draws = 20;
-    harness.run_steps(4);
+    ask_few_draws(&mut harness);
     step_until(&mut harness, "the forecast", is_answered);
     harness
 }

@@ -11,7 +11,7 @@ use impactlab::app::{
 };
 use impactlab_core::units::UnitSystem;
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_forecast, is_idle, open, open_with_few_draws, step_until};
 use crate::pictures::save;
 use crate::reconstruct::evidence_in;
 
@@ -84,15 +84,10 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
 /// “not counted: that takes a site with lanes” was said without a way to one.
 #[test]
 fn lanes_that_are_not_counted_lead_to_a_site_and_to_both_vehicles() {
-    let is_forecast = |state: &State| {
-        let forecast = &state.session.response.forecast;
-        is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
-    };
     let says = |harness: &Harness<'_, App>, text: &str| {
         harness.query_all_by_label_contains(text).next().is_some()
     };
-    let mut harness = open(&[SCENARIO]);
-    step_until(&mut harness, "the forecast", is_forecast);
+    let mut harness = open_with_few_draws(SCENARIO);
     apply(&mut harness, Command::Show(Pane::MotionForecast));
     harness.run_steps(4);
     assert!(says(&harness, "not counted: that takes a site with lanes"));

@@ -104,6 +104,22 @@ pub fn is_forecast(state: &State) -> bool {
     is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
 }
 
+/// Opens the app on a scenario and waits for a forecast of few draws, for what does not depend on how many there
+/// are. The case is not as it was opened any more.
+pub fn open_with_few_draws(path: &str) -> Harness<'static, App> {
+    let mut harness = open(&[path]);
+    step_until(&mut harness, "the simulation", is_idle);
+    ask_few_draws(&mut harness);
+    step_until(&mut harness, "the forecast", is_forecast);
+    harness
+}
+
+/// Asks for the forecast with few draws from now on.
+pub fn ask_few_draws(harness: &mut Harness<'_, App>) {
+    harness.state_mut().state_mut().project.predict_motion.draws = 20;
+    harness.run_steps(4);
+}
+
 /// Carries out a command as if the user had asked for it.
 pub fn apply(harness: &mut Harness<'_, App>, command: Command) {
     let context = harness.ctx.clone();

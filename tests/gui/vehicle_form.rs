@@ -11,7 +11,7 @@ use impactlab_core::vehicle::{CrushFace, CrushStiffness, DataSheet, built_in_veh
 use impactlab_study::VehicleChoice;
 use impactlab_study::case_file::CaseFile;
 
-use crate::harness::{apply, is_forecast, is_idle, open, state, step_until};
+use crate::harness::{apply, ask_few_draws, is_forecast, is_idle, open, state, step_until};
 use crate::import::choose;
 use crate::pictures::save;
 
@@ -30,10 +30,11 @@ fn front(state: &State) -> [Option<CrushStiffness>; 2] {
     sheets(state).map(|sheet| sheet.crush.face(CrushFace::Front))
 }
 
-/// The scenario with both vehicles in their forms, and its forecast.
+/// The scenario with both vehicles in their forms, and its forecast of few draws.
 fn with_forms() -> Harness<'static, App> {
     let mut harness = open(&[SCENARIO]);
     step_until(&mut harness, "the simulation", is_idle);
+    ask_few_draws(&mut harness);
     apply(&mut harness, Command::Show(Pane::Vehicle));
     harness.run_steps(4);
     for _ in 0..2 {
@@ -187,10 +188,6 @@ fn report(state: &State) -> serde_json::Value {
 #[test]
 fn a_stiffness_that_is_typed_is_that_of_the_forecast_and_of_the_saved_case() {
     let mut harness = with_forms();
-    // Few motions follow from the stiffness as many do.
-    harness.state_mut().state_mut().project.predict_motion.draws = 20;
-    harness.run_steps(4);
-    step_until(&mut harness, "the forecast of few motions", is_forecast);
     let by_class = report(state(&harness));
     assert_eq!(front(state(&harness)), [None; 2]);
     tick_front(&mut harness, 1);

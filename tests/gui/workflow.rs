@@ -12,7 +12,7 @@ use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::UnitSystem;
 
-use crate::harness::{apply, is_idle, open, open_with, state, step_until};
+use crate::harness::{apply, is_idle, open, open_with, open_with_few_draws, state, step_until};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -310,7 +310,7 @@ fn data_that_are_opened_leave_the_answers_to_other_questions_as_they_are() {
 
 #[test]
 fn a_simulation_that_fails_leaves_no_forecast_of_an_earlier_one() {
-    let mut harness = open(&["assets/scenarios/pit_right_rear.toml"]);
+    let mut harness = open_with_few_draws("assets/scenarios/pit_right_rear.toml");
     step_until(&mut harness, "the forecasts", |state| {
         let session = &state.session;
         let is_told =
