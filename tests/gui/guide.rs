@@ -16,7 +16,7 @@ use impactlab_study::ConfigChoice;
 use impactlab_sweep::Outcome;
 use impactlab_sweep::atlas::Atlas;
 
-use crate::harness::{apply, is_forecast, is_idle, open_at, state, step_until};
+use crate::harness::{apply, ask_few_draws, is_forecast, is_idle, open_at, state, step_until};
 use crate::pictures::save;
 use crate::settings::SMALL_FORCE;
 
@@ -64,6 +64,11 @@ fn kept(name: &str, image: &RgbaImage) -> RgbaImage {
 #[test]
 fn a_pit_from_the_scenario_to_two_variants() {
     let mut harness = opened(PIT);
+    step_until(&mut harness, "the simulation", is_idle);
+    // The guide shows the usual forecast. A window of this size is drawn with few motions as well.
+    if !is_updating() {
+        ask_few_draws(&mut harness);
+    }
     step_until(&mut harness, "the forecast", is_forecast);
     step(&mut harness, "tutorial-pit-window-scenario.png");
 
