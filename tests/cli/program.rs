@@ -71,6 +71,14 @@ pub fn answer(args: &[&str]) -> Value {
     json(&ok(program().args(args).arg("--json").output().unwrap()))
 }
 
+/// What a reconstruction tells a person, and its report from the file that the same run writes.
+pub fn told_and_reported(args: &[&str]) -> (String, Value) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let told = ok(program().args(args).arg("--out").arg(&out).output().unwrap());
+    (told, json(&std::fs::read_to_string(out.join("reconstruction.json")).unwrap()))
+}
+
 /// Names of what is in a folder, in order.
 pub fn names(folder: &Path) -> Vec<String> {
     let entries = folder.read_dir().unwrap();

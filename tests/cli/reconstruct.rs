@@ -7,7 +7,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::program::{json, ok, program, text};
+use crate::program::{json, ok, program, text, told_and_reported};
 
 /// A car that spun to rest.
 const EVIDENCE: &str = "tests/data/evidence/spin.toml";
@@ -57,7 +57,7 @@ fn speeds_have_intervals_and_the_same_seed_gives_the_same() {
 #[test]
 fn few_particles_have_no_interval_and_say_what_to_do() {
     let args = ["reconstruct", EVIDENCE, "--particles", "60", "--seed", "3"];
-    let report = report(&[&args[..], &["--json"]].concat());
+    let (printed, report) = told_and_reported(&args);
     assert!(report["ess"].as_f64().unwrap() < 100.0, "{}", report["ess"]);
     for quantity in report["quantities"].as_array().unwrap() {
         assert!(quantity["median"].is_number(), "{quantity}");
@@ -65,7 +65,6 @@ fn few_particles_have_no_interval_and_say_what_to_do() {
         assert!(quantity.get("interval_90").is_none(), "{quantity}");
     }
     assert_eq!(report["budget"], Value::Array(Vec::new()));
-    let printed = ok(program().args(args).output().unwrap());
     assert!(printed.contains("no intervals are given"), "{printed}");
     // Ranges of what is assumed beforehand are none of the answer.
     let mut of_answer = printed.lines().filter(|line| !line.contains("assumed"));

@@ -4,7 +4,7 @@ use std::fs;
 
 use tempfile::TempDir;
 
-use crate::program::{answer, ok, program, text};
+use crate::program::{ok, program, text, told_and_reported};
 
 const EVIDENCE: &str = "docs/guide/examples/single_car.toml";
 
@@ -21,7 +21,7 @@ fn without(told: &str, words: &[&str]) {
 #[test]
 fn a_single_car_has_a_speed_at_the_start_and_nothing_of_an_impact() {
     let args = ["reconstruct", EVIDENCE, "--particles", "150"];
-    let told = ok(program().args(args).output().unwrap());
+    let (told, report) = told_and_reported(&args);
     without(&told, &OF_IMPACTS);
     without(&told, &["struck car"]);
     assert!(told.contains("speed of the car at the start"), "{told}");
@@ -29,7 +29,6 @@ fn a_single_car_has_a_speed_at_the_start_and_nothing_of_an_impact() {
     let rest = told.lines().find(|line| line.starts_with("rest y")).unwrap();
     assert!(rest.contains("0.00 m"), "{rest}");
 
-    let report = answer(&args);
     without(&serde_json::to_string_pretty(&report).unwrap(), &OF_IMPACTS[1..]);
     assert_eq!(report["kind"], "single_car");
     let names: Vec<&str> = report["quantities"]
