@@ -5,31 +5,33 @@ use super::*;
 /// The example case as the window makes it: the PIT with the force that is predicted, with a driver who brakes,
 /// and with a lighter car.
 fn example(harness: &mut Harness<'_, App>) {
-    let answered = |harness: &mut Harness<'_, App>| {
+    // A case holds questions: the forecasts of the steps on the way are not waited for.
+    let settled = |harness: &mut Harness<'_, App>| {
         harness.run_steps(2);
-        step_until(harness, "the forecast", is_answered);
+        step_until(harness, "the simulation", is_idle);
     };
     // The same force as where the command line is asked.
     let project = &mut harness.state_mut().state_mut().project;
     project.predict_motion.force = ForceSource::Predicted(ModelChoice::default());
-    answered(harness);
+    settled(harness);
     variant(harness, VariantCommand::Rename("coasts".to_owned()));
     variant(harness, VariantCommand::Duplicate);
     variant(harness, VariantCommand::Rename("driver brakes".to_owned()));
     let brake = Braking::new(0.7, 0.8, 0.2);
     let ending = Ending { brake: Some(brake), ..Ending::default() };
     scenario(harness).ending = Some(ending);
-    answered(harness);
+    settled(harness);
     variant(harness, VariantCommand::Show("coasts".to_owned()));
-    answered(harness);
+    settled(harness);
     variant(harness, VariantCommand::Duplicate);
     variant(harness, VariantCommand::Rename("struck vehicle of 1500 kg".to_owned()));
     let struck = &mut scenario(harness).struck;
     struck.yaw_inertia_kg_m2 *= 1500.0 / struck.mass_kg;
     struck.mass_kg = 1500.0;
-    answered(harness);
+    settled(harness);
     variant(harness, VariantCommand::Show("coasts".to_owned()));
-    answered(harness);
+    settled(harness);
+    step_until(harness, "the forecast", is_answered);
     let notes =
         "A PIT at 54 km/h: does it matter whether the driver brakes, and how heavy the car is?";
     harness.state_mut().state_mut().case.file.notes = notes.to_owned();
