@@ -12,10 +12,7 @@ use impactlab_document::report::{
 use impactlab_reconstruct::evidence::Stated;
 use impactlab_reconstruct::hand::HandMethod;
 use impactlab_study::case_file::{CaseFile, Expert, Variant};
-use impactlab_study::{
-    EvidenceChoice, HandRequest, ImpactRequest, Library, ReconstructRequest, Request,
-    ScenarioChoice,
-};
+use impactlab_study::{HandRequest, ImpactRequest, Library, Request, ScenarioChoice};
 
 use crate::report::{english, impact_case, pit, position_alone, report, settings, staged};
 

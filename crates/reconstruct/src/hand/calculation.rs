@@ -119,6 +119,9 @@ pub struct HandAnswer {
     pub sensitivities: Vec<HandSensitivity>,
     /// Conditions of the method that are violated.
     pub violated: Vec<Phrase>,
+    /// Share of the draws that violate a condition which the inputs meet at their values, with what is said of
+    /// one of them; none where that is little.
+    pub violated_in_draws: Option<(f64, Phrase)>,
     /// Draws without an answer, which are left out.
     pub n_unsolved: usize,
     /// Share of the draws in which the vehicle stops before the place of the collision, where that is asked.
@@ -343,7 +346,17 @@ impl HandQuestion<'_> {
             .filter(|idx| outputs.get(*idx).is_some_and(|value| value.is_finite()))
             .map(|idx| share_of(&drawn, |outputs| outputs.get(idx).is_some_and(|m| *m >= 0.0)));
         let violated = (formula.warn)(&at, &outputs);
-        Ok(HandAnswer { numbers, quantities, sensitivities, violated, n_unsolved, avoided_share })
+        let violated_in_draws =
+            formula.violated_in_draws(&at, &drawn).filter(|_| violated.is_empty());
+        Ok(HandAnswer {
+            numbers,
+            quantities,
+            sensitivities,
+            violated,
+            violated_in_draws,
+            n_unsolved,
+            avoided_share,
+        })
     }
 
     /// Standard deviation of the points of a mark, m; 0 without any.

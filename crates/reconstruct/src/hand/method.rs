@@ -80,6 +80,29 @@ pub(super) struct Formula {
     pub warn: fn(&HandValues<'_>, &[f64]) -> Vec<Phrase>,
 }
 
+/// Share of the draws from which on it is told that they violate a condition: as many lie beyond an end of an
+/// interval of 90 %.
+const TOLD_SHARE: f64 = 0.05;
+
+impl Formula {
+    /// Which share of the draws violates a condition, with what is said of the first one that does; none where
+    /// it is small.
+    ///
+    /// - `at`: the inputs at their values;
+    /// - `drawn`: the outputs of each draw.
+    pub fn violated_in_draws(
+        &self,
+        at: &HandValues<'_>,
+        drawn: &[Vec<f64>],
+    ) -> Option<(f64, Phrase)> {
+        let said = drawn.iter().filter_map(|outputs| (self.warn)(at, outputs).into_iter().next());
+        let said: Vec<Phrase> = said.collect();
+        let share = said.len() as f64 / drawn.len().max(1) as f64;
+        let first = said.into_iter().next().filter(|_| share >= TOLD_SHARE)?;
+        Some((share, first))
+    }
+}
+
 impl HandMethod {
     /// Every method.
     pub const ALL: &'static [Self] = <Self as strum::VariantArray>::VARIANTS;
