@@ -27,25 +27,23 @@ impl HandReport {
     pub fn result_table(&self) -> FactTable {
         let nothing = || Value::Text(String::new());
         let row = |result: &HandResult| {
-            let sigma = result.sigma.map(|sigma| Value::Sigma(result.quantity, sigma));
-            let values = vec![
-                Value::Estimate(result.quantity, result.estimate.clone()),
-                Value::Number(result.quantity, result.value),
-                sigma.unwrap_or_else(nothing),
-            ];
+            // Its digits are those that its standard deviation leaves.
+            let at_values = match result.sigma.filter(|sigma| *sigma > 0.0) {
+                Some(sigma) => Value::Measured(result.quantity, result.value, sigma),
+                None => Value::Number(result.quantity, result.value),
+            };
+            let values = vec![Value::Estimate(result.quantity, result.estimate.clone()), at_values];
             Fact::row(Value::Phrase(result.label.to_owned()), values)
         };
         let mut facts: Vec<Fact> = self.results.iter().map(row).collect();
         facts.extend(self.avoided_share.map(|share| {
             let n = self.draws.saturating_sub(self.draws_left_out);
             let chance = Value::Chance(share, Some(share_standard_error(share, n as f64)));
-            Fact::row(Value::Term(Term::HandAvoided), vec![chance, nothing(), nothing()])
+            Fact::row(Value::Term(Term::HandAvoided), vec![chance, nothing()])
         }));
-        FactTable::new(Term::HandResults, facts).with_levels(RECONSTRUCTED).with_columns(&[
-            Term::Median,
-            Term::HandAtValues,
-            Term::HandFirstOrder,
-        ])
+        FactTable::new(Term::HandResults, facts)
+            .with_levels(RECONSTRUCTED)
+            .with_columns(&[Term::Median, Term::HandAtValues])
     }
 
     /// The inputs, and whose they are.

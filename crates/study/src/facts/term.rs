@@ -632,8 +632,8 @@ terms! {
     Choices: "choices of those to learn from", "Auswahlen der Bewegungen zum Lernen";
     // Methods by hand.
     HandResults: "By hand", "Von Hand";
-    HandAtValues: "at the values of the inputs", "bei den Werten der Eingaben";
-    HandFirstOrder: "± to first order", "± in erster Ordnung", "One standard deviation";
+    HandAtValues: "at the values of the inputs, ± to first order",
+        "bei den Werten der Eingaben, ± in erster Ordnung", "± is one standard deviation";
     HandAvoided: "stops before the place of the collision with", "steht vor der Unfallstelle mit";
     HandInputs: "Inputs of the calculation by hand", "Eingaben der Rechnung von Hand";
     HandSource: "whose it is", "Herkunft";

@@ -394,6 +394,8 @@ mod tests {
     use std::ops::ControlFlow;
 
     use super::*;
+    use crate::facts::FactWriter;
+    use impactlab_core::units::UnitSystem;
     use impactlab_reconstruct::evidence::Stated;
 
     fn request(method: HandMethod, inputs: &[(&str, f64, Option<f64>)]) -> HandRequest {
@@ -464,26 +466,39 @@ mod tests {
         assert!(found[0].ends_with("is it in km/h, mph, ft/s?"), "{found:?}");
     }
 
+    /// Vehicle 1 strikes one at rest.
+    ///
+    /// - `sigma_m_s`: of both speeds after the impact.
+    fn in_line(sigma_m_s: f64) -> Answer<HandReport> {
+        let inputs = [
+            ("mass_1_kg", 1500.0, Some(30.0)),
+            ("mass_2_kg", 1200.0, Some(30.0)),
+            ("speed_after_1_m_s", 8.0, Some(sigma_m_s)),
+            ("speed_after_2_m_s", 9.0, Some(sigma_m_s)),
+            ("speed_2_m_s", 0.0, Some(0.0)),
+        ];
+        answer(&request(HandMethod::MomentumInLine, &inputs))
+    }
+
     /// A restitution of -0.09 to 0.23 was told without a word: a quarter of the draws has vehicle 1 drive
     /// through the other one.
     #[test]
     fn draws_that_are_impossible_are_a_warning() {
-        let with = |sigma| {
-            let inputs = [
-                ("mass_1_kg", 1500.0, Some(30.0)),
-                ("mass_2_kg", 1200.0, Some(30.0)),
-                ("speed_after_1_m_s", 8.0, Some(sigma)),
-                ("speed_after_2_m_s", 9.0, Some(sigma)),
-                ("speed_2_m_s", 0.0, Some(0.0)),
-            ];
-            answer(&request(HandMethod::MomentumInLine, &inputs)).caveats
-        };
-        let sure = with(0.1);
+        let sure = in_line(0.1).caveats;
         assert!(!sure.has(CaveatKind::OutsideDomain), "{sure:?}");
-        let unsure = with(1.0);
+        let unsure = in_line(1.0).caveats;
         let told = unsure.iter().find(|caveat| caveat.kind == CaveatKind::OutsideDomain).unwrap();
         assert!(told.text.contains("imply a restitution of -0."), "{told}");
-        assert!(told.text.starts_with("2"), "a quarter of the draws: {told}");
+        assert!(told.text.starts_with('2'), "a quarter of the draws: {told}");
+    }
+
+    /// “54.72 km/h” stood beside ± 4.7 km/h.
+    #[test]
+    fn a_value_has_the_digits_that_its_standard_deviation_leaves() {
+        let table = in_line(1.0).result_table().to_text(&FactWriter::english(UnitSystem::Si));
+        let cells = &table.rows[0].cells;
+        assert_eq!(cells.len(), table.header.len());
+        assert_eq!(cells.last().map(String::as_str), Some("54.7 ± 4.7 km/h"));
     }
 
     #[test]
