@@ -11,7 +11,7 @@ use impactlab_study::analysis::PulseSetup;
 use impactlab_study::case_file::{CaseFile, CaseReport, Variant};
 use impactlab_study::{MotionSource, Report, ScenarioChoice, SimulateReport, SimulateRequest};
 
-use crate::report::{english, impact_case, report, settings, staged};
+use crate::report::{english, impact_case, pit, report, settings, staged};
 
 /// The tables of a document whose caption begins so.
 fn tables<'a>(document: &'a ReportDocument, caption: &str) -> Vec<&'a Table> {
@@ -194,4 +194,21 @@ fn settings_that_nobody_changed_are_gathered() {
     });
     let mut cells = rows.flatten().flatten();
     assert!(cells.all(|cell| cell != "method of integration"));
+}
+
+/// A restitution that the question gives was “assumed by the program”, as the force network does not use it.
+#[test]
+fn what_is_given_and_not_used_is_not_assumed() {
+    let (document, _) = pit();
+    let inputs = document.section(SectionKind::Inputs).expect("inputs");
+    let rows = inputs.blocks.iter().flat_map(|block| match block {
+        Block::Table(table) => table.rows.as_slice(),
+        _ => &[],
+    });
+    let unused: Vec<&Vec<String>> =
+        rows.filter(|row| row.iter().any(|cell| cell == "not used")).collect();
+    assert!(!unused.is_empty(), "the force network does not use the restitution");
+    for row in unused {
+        assert!(row.iter().any(|cell| cell == "given"), "{row:?}");
+    }
 }

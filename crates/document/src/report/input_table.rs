@@ -73,12 +73,13 @@ fn by_group<'a>(rows: impl Iterator<Item = &'a InputRow>) -> Vec<Group<'a>> {
     groups
 }
 
-/// Rows in which what was assumed alike, for the same reason, stands once with all values.
+/// Rows in which what was assumed alike, or is not used, for the same reason, stands once with all values.
 fn merged(rows: &[&InputRow], wording: &Wording) -> Vec<InputRow> {
+    let found_out = [wording.words.inputs_assumed, wording.words.inputs_not_used];
     let mut merged: Vec<InputRow> = Vec::new();
     for row in rows {
         let is_alike = |known: &&mut InputRow| {
-            known.group == wording.words.inputs_assumed
+            found_out.contains(&known.group.as_str())
                 && (&known.group, &known.label, known.class, &known.source)
                     == (&row.group, &row.label, row.class, &row.source)
         };
@@ -309,7 +310,7 @@ mod tests {
     fn what_is_assumed_for_one_reason_stands_once() {
         let wording = Wording::english(UnitSystem::Si);
         let unused = |value: &str| InputRow {
-            group: wording.words.inputs_assumed.to_owned(),
+            group: wording.words.inputs_not_used.to_owned(),
             value: value.to_owned(),
             ..row("not used", "the network knows it")
         };

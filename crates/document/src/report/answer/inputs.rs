@@ -11,7 +11,7 @@ use crate::report::method::Method;
 use crate::report::numbers::Wording;
 use crate::report::parts::{InputRow, Part};
 use crate::report::paths::ShownPaths;
-use impactlab_core::uncertainty::{Caveat, CaveatSubject};
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_study::{
     HandRequest, ImpactRequest, PredictForceRequest, PredictMotionRequest, ReconstructRequest,
     ReplayRequest, Request, ScenarioChoice, SimulateRequest,
@@ -161,13 +161,19 @@ pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'
     let is_told_once = |assumption: &&Caveat| {
         !has_estimates || assumption.subject != Some(CaveatSubject::VehicleParameter)
     };
-    let assumed = part.caveats.assumptions().filter(is_told_once).map(|assumption| InputRow {
-        // What several answers assume alike is listed once.
-        group: wording.words.inputs_assumed.to_owned(),
-        label: label(assumption).to_owned(),
-        value: wording.caveat_text(assumption),
-        class: InputClass::Assumed,
-        source: wording.caveat_reason(assumption),
+    let assumed = part.caveats.assumptions().filter(is_told_once).map(|assumption| {
+        // What several answers assume alike is listed once. What is not used was given, and not assumed.
+        let (group, class) = match assumption.kind {
+            CaveatKind::NotUsed => (wording.words.inputs_not_used, InputClass::Given),
+            _ => (wording.words.inputs_assumed, InputClass::Assumed),
+        };
+        InputRow {
+            group: group.to_owned(),
+            label: label(assumption).to_owned(),
+            value: wording.caveat_text(assumption),
+            class,
+            source: wording.caveat_reason(assumption),
+        }
     });
     let mut rows = given_rows(request, &part.kind, wording, paths);
     if part.methods.contains(&Method::SingleCar) {

@@ -226,6 +226,7 @@ pub(super) const WORDS: Words = Words {
     inputs_caption: "{name}: {group}",
     inputs_said: "{caption}; wie in der Frage angegeben",
     inputs_assumed: "vom Programm angenommen",
+    inputs_not_used: "vorgegeben und von einer Antwort nicht verwendet",
     inputs_left: "Bei den Vorgaben des Programms belassen: {values}.",
     validity_text: "Was die Modelle des Gutachtens vernachlässigen, steht dort. Es folgt jede Einschränkung, \
         die das Programm gefunden hat, mit Begründung und Abhilfe.",

@@ -219,6 +219,7 @@ pub(super) const WORDS: Words = Words {
     inputs_caption: "{name}: {group}",
     inputs_said: "{caption}; as stated in the question",
     inputs_assumed: "assumed by the program",
+    inputs_not_used: "given and not used by an answer",
     inputs_left: "Left at the defaults of the program: {values}.",
     validity_text: "What the models of the opinion leave out is said there. Each restriction that the \
         program found follows, with its sentence and a remedy.",

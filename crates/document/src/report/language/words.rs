@@ -167,6 +167,7 @@ pub(in crate::report) struct Words {
     pub inputs_said: &'static str,
     pub inputs_left: &'static str,
     pub inputs_assumed: &'static str,
+    pub inputs_not_used: &'static str,
     pub validity_text: &'static str,
     pub validity_models: &'static str,
     pub badges_caption: &'static str,
