@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::Ui;
+use egui::{ScrollArea, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::app::case::CaseCommand;
@@ -15,8 +15,8 @@ use impactlab_study::case_file::Reach;
 /// Number of cases of which it is remembered what they may do.
 const MAX_TRUSTED: usize = 200;
 
-/// Number of files that are listed in the dialog.
-const MAX_LISTED: usize = 20;
+/// Height of the list of what a case does, points; what is longer scrolls.
+const LIST_HEIGHT: f32 = 320.0;
 
 /// A case and what it may do.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,13 +68,11 @@ pub fn trust_ui(ui: &mut Ui, trusted: &TrustedCase, commands: &mut Vec<Command>)
     let name = file_name(path);
     ui.heading(format!("Open {name}?"));
     ui.label("This case does more than read the files in its folder:");
-    let phrases = reach.phrases();
-    for phrase in phrases.iter().take(MAX_LISTED) {
-        ui.label(phrase);
-    }
-    if phrases.len() > MAX_LISTED {
-        ui.label(format!("and {} more", phrases.len() - MAX_LISTED));
-    }
+    ScrollArea::vertical().max_height(LIST_HEIGHT).show(ui, |ui| {
+        for phrase in reach.phrases() {
+            ui.label(phrase);
+        }
+    });
     ui.weak("Open it if you know who made it. Nothing of it was read or written so far.");
     ui.separator();
     ui.horizontal(|ui| {

@@ -168,7 +168,8 @@ fn dataset_ui(
                     notice_ui(ui, Severity::Error, error_chain(problem));
                 }
                 if problems.len() > SHOWN_PROBLEMS {
-                    ui.weak(format!("and {} more", problems.len() - SHOWN_PROBLEMS));
+                    let n_more = problems.len() - SHOWN_PROBLEMS;
+                    ui.weak(format!("and {n_more} more, which impactlab check lists"));
                 }
             });
         }

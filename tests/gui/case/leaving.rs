@@ -1,4 +1,4 @@
-//! Leaving a case that is still being written.
+//! Leaving a case that is still being written, and allowing one what it does.
 
 use impactlab::app::{Dialog, LeavingStage};
 
@@ -56,4 +56,25 @@ fn a_save_that_fails_at_quit_keeps_the_window_open_and_says_why() {
     harness.get_by_label("Quit").click();
     harness.run_steps(3);
     assert!(state(&harness).session.may_close);
+}
+
+/// The last of what a case does was “and 5 more”, which the user allowed unseen.
+#[test]
+fn all_that_a_case_does_is_listed_before_it_is_allowed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("case/a.impactlab");
+    fs::create_dir(folder.path().join("case")).expect("a folder");
+    let paths = (0..25).map(|n| folder.path().join(format!("secret-{n:02}"))).collect();
+    let questions = vec![CheckRequest { paths, all: false, map: None }.into()];
+    let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
+    CaseFile::new("a", variant).save(&path, Existing::Refuse).expect("written");
+    let phrases = CaseFile::load(&path).expect("a case").reach(&path).phrases();
+    assert_eq!(phrases.len(), 25, "{phrases:?}");
+    let mut harness = open(&[SCENARIO]);
+    apply(&mut harness, Command::Open(vec![path]));
+    harness.run_steps(3);
+    harness.get_by_label("Open a.impactlab?");
+    for phrase in &phrases {
+        assert!(harness.query_by_label(phrase).is_some(), "{phrase} is not listed");
+    }
 }
