@@ -117,7 +117,11 @@ fn plain(key: &str, value: &Value, writing: Writing<'_>) -> String {
             }
             let shown = paths.shown(text);
             let given = (key == "name").then(|| given_name_of(wording.language, &shown)).flatten();
-            given.or_else(|| phrase_of(wording.language, &shown)).unwrap_or(shown)
+            let known = given.or_else(|| phrase_of(wording.language, &shown));
+            known.unwrap_or_else(|| match key {
+                "notes" => wording.remarks(&shown),
+                _ => shown,
+            })
         }
         Value::Number(number) if number.is_f64() => {
             let number = number.as_f64().unwrap_or(f64::NAN);

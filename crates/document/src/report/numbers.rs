@@ -20,6 +20,12 @@ pub(super) struct Wording {
     pub words: &'static Words,
 }
 
+/// How the remarks begin that the window writes of a cell of the atlas, in English and in German.
+const CELL_REMARKS: [(&str, &str); 2] = [
+    ("From the atlas. ", "Aus dem Atlas. "),
+    ("The middle of a cell of the atlas. ", "Die Mitte einer Zelle des Atlas. "),
+];
+
 impl Deref for Wording {
     type Target = NumberFormat;
 
@@ -135,6 +141,35 @@ impl Wording {
         parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join("; ")))
     }
 
+    /// Remarks of a person, which stay as they are, but for those that the window writes of a cell of the atlas.
+    pub fn remarks(&self, text: &str) -> String {
+        let of_cell = || {
+            let of = |(en, de): &(&str, &'static str)| Some((text.strip_prefix(en)?, *de));
+            let (cell, before) = CELL_REMARKS.iter().find_map(of)?;
+            let parts: Option<Vec<String>> =
+                cell.split("; ").map(|part| self.axis_with_bin(part)).collect();
+            Some(format!("{before}{}", parts?.join("; ")))
+        };
+        let german = (self.language == Language::De).then(of_cell).flatten();
+        german.unwrap_or_else(|| text.to_owned())
+    }
+
+    /// An axis of the atlas with one of its bins, such as `Closing speed across the lane: 10 to 15 km/h`.
+    fn axis_with_bin(&self, text: &str) -> Option<String> {
+        let (axis, bin) = text.split_once(": ")?;
+        let axis = phrase_of(self.language, axis)?;
+        let ends = bin.split_once(" to ").filter(|(low, _)| low.parse::<f64>().is_ok());
+        let bin = match ends {
+            Some((low, high)) => {
+                let (high, symbol) = high.split_once(' ').unwrap_or((high, ""));
+                self.with_unit(&format!("{low} {} {high}", self.words.to), symbol)
+            }
+            // Pairs of vehicles are names.
+            None => phrase_of(self.language, bin).unwrap_or_else(|| bin.to_owned()),
+        };
+        Some(format!("{axis}: {bin}"))
+    }
+
     /// A number with its SI unit, as notes of vehicle data have it, in the units of the report.
     fn in_units(&self, value: &str) -> Option<String> {
         let (number, symbol) = value.split_once(' ')?;
@@ -247,6 +282,7 @@ mod tests {
     use super::*;
     use impactlab_core::uncertainty::CaveatKind;
     use impactlab_core::units::PhraseValue;
+    use impactlab_sweep::atlas::Axis;
 
     /// 62 km/h at 18° were told as 58.965504 km/h, and 1 m/s as 2.2369363 mph.
     #[test]
@@ -296,6 +332,28 @@ mod tests {
         let german = Wording { format, words: words_of(Language::De) };
         let told = german.note("said with the collision, instead of 2.0468 m");
         assert_eq!(told, "mit der Kollision angegeben, statt 2,0468 m");
+    }
+
+    /// What the window writes of a cell of the atlas stood in English in a German opinion.
+    #[test]
+    fn remarks_on_a_cell_of_the_atlas_are_german_and_others_stay() {
+        let format = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let german = Wording { format, words: words_of(Language::De) };
+        let axes = Axis::pit().unwrap();
+        let cell: Vec<String> = axes
+            .iter()
+            .map(|axis| format!("{}: {}", axis.label, axis.bin_text(0, UnitSystem::Si)))
+            .collect();
+        let english = format!("From the atlas. {}", cell.join("; "));
+        let told = german.remarks(&english);
+        assert!(told.starts_with("Aus dem Atlas. "), "{told}");
+        for axis in &axes {
+            assert!(!told.contains(&axis.label), "{}: {told}", axis.label);
+        }
+        assert!(told.contains(" bis ") && !told.contains(" to "), "{told}");
+        assert_eq!(Wording::english(UnitSystem::Si).remarks(&english), english);
+        let own = "From the atlas. What I saw: nothing";
+        assert_eq!(german.remarks(own), own);
     }
 
     /// “another one: --vehicle” stood in an opinion that is read in court.

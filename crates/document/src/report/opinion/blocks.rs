@@ -175,8 +175,11 @@ fn figures(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
             (_, Some(first)) => differences(&[first.part], &[it.part], wording),
         };
         let differs = (spoken.len() > 1).then(|| [words.differs.to_owned(), differs]);
-        let notes = if it.notes.is_empty() { NONE } else { it.notes };
-        let notes = has_notes.then(|| [words.notes.to_owned(), notes.to_owned()]);
+        let notes = match it.notes.is_empty() {
+            true => NONE.to_owned(),
+            false => wording.remarks(it.notes),
+        };
+        let notes = has_notes.then(|| [words.notes.to_owned(), notes]);
         let figures = it.opinions().flat_map(|of| of.figures.clone());
         (it.name.clone(), differs.into_iter().chain(notes).chain(figures).collect())
     };
