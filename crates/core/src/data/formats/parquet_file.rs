@@ -1,8 +1,9 @@
 //! Parquet files: columns of numbers by their names, nested ones with points between the names.
 //!
-//! Read are columns of numbers and switches that are not repeated; texts, decimals and lists are left out. A
-//! column that says that it holds times since 1970 has their unit. What the file says of its own sizes is checked
-//! first ([`parquet_check`](super::parquet_check)). Written by pandas, polars, Spark and DuckDB, and here by
+//! Read are columns of numbers and switches that are not repeated; texts, lists and decimals of more than 64 bits are
+//! left out. A column that says that it holds times since 1970 has their unit; those of 96 bits always are such times.
+//! What the file says of its own sizes is checked first ([`parquet_check`](super::parquet_check)). Written by pandas,
+//! polars, Spark and DuckDB, and here by
 //! [`write_restricted_series_parquet`](crate::data::write_restricted_series_parquet).
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -29,6 +30,9 @@ const MAX_CELLS: usize = 32 << 20;
 /// Rows that are read at a time.
 const BATCH: usize = 8192;
 
+/// Decimal places that numbers of 64 bits may have.
+const PLACES: std::ops::RangeInclusive<i32> = 0..=18;
+
 /// Names of columns of stamps, which are the time if they have its unit.
 const STAMPS: [&str; 5] = ["timestamp", "time", "stamp", "header.stamp", "t"];
 
@@ -41,6 +45,8 @@ struct NumberColumn {
     full: i16,
     /// Whether whole numbers have no sign.
     is_unsigned: bool,
+    /// How many of what is stored are 1: 100 of a decimal with two places.
+    per_unit: f64,
     values: Vec<Option<f64>>,
 }
 
@@ -183,20 +189,26 @@ impl NumberColumn {
             Some(LogicalType::Integer(of)) => !of.is_signed,
             _ => matches!(column.converted_type(), ConvertedType::UINT_32 | ConvertedType::UINT_64),
         };
+        let per_unit = if is_decimal(column) { 10.0_f64.powi(column.type_scale()) } else { 1.0 };
         let (header, full) = (header(column), column.max_def_level());
-        Self { idx, header, full, is_unsigned, values: Vec::new() }
+        Self { idx, header, full, is_unsigned, per_unit, values: Vec::new() }
     }
 }
 
-/// Whether a column holds one plain number or switch in a row.
+/// Whether a column holds one plain number, stamp or switch in a row.
 fn is_number(column: &ColumnDescriptor) -> bool {
     let is_plain = matches!(
         column.physical_type(),
-        Type::BOOLEAN | Type::INT32 | Type::INT64 | Type::FLOAT | Type::DOUBLE
+        Type::BOOLEAN | Type::INT32 | Type::INT64 | Type::INT96 | Type::FLOAT | Type::DOUBLE
     );
-    let is_decimal = column.converted_type() == ConvertedType::DECIMAL
-        || matches!(column.logical_type_ref(), Some(LogicalType::Decimal(_)));
-    is_plain && !is_decimal && column.max_rep_level() == 0
+    let is_scaled = !is_decimal(column) || PLACES.contains(&column.type_scale());
+    is_plain && is_scaled && column.max_rep_level() == 0
+}
+
+/// Whether whole numbers of a column stand for decimals.
+fn is_decimal(column: &ColumnDescriptor) -> bool {
+    column.converted_type() == ConvertedType::DECIMAL
+        || matches!(column.logical_type_ref(), Some(LogicalType::Decimal(_)))
 }
 
 /// The name of a column, with the unit of its stamps.
@@ -208,6 +220,7 @@ fn header(column: &ColumnDescriptor) -> String {
             TimeUnit::MICROS => Some("us"),
             TimeUnit::NANOS => Some("ns"),
         },
+        _ if column.physical_type() == Type::INT96 => Some("ns"),
         _ => match column.converted_type() {
             ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS => Some("ms"),
             ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => Some("us"),
@@ -228,20 +241,21 @@ fn numbers(
 ) -> Result<Vec<Option<f64>>, ParquetError> {
     use ColumnReader::{
         BoolColumnReader, DoubleColumnReader, FloatColumnReader, Int32ColumnReader,
-        Int64ColumnReader,
+        Int64ColumnReader, Int96ColumnReader,
     };
     let extent = (column.full, n_rows);
-    let is_unsigned = column.is_unsigned;
+    let (is_unsigned, per_unit) = (column.is_unsigned, column.per_unit);
     match reader {
         BoolColumnReader(reader) => all(reader, extent, |value| f64::from(u8::from(*value))),
         Int32ColumnReader(reader) => all(reader, extent, |value| match is_unsigned {
             true => f64::from(value.cast_unsigned()),
-            false => f64::from(*value),
+            false => f64::from(*value) / per_unit,
         }),
         Int64ColumnReader(reader) => all(reader, extent, |value| match is_unsigned {
             true => value.cast_unsigned() as f64,
-            false => *value as f64,
+            false => *value as f64 / per_unit,
         }),
+        Int96ColumnReader(reader) => all(reader, extent, |value| value.to_nanos() as f64),
         FloatColumnReader(reader) => all(reader, extent, |value| f64::from(*value)),
         DoubleColumnReader(reader) => all(reader, extent, |value| *value),
         _ => Ok(Vec::new()),
@@ -280,4 +294,50 @@ fn all<T: DataType>(
 
 fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }).take(120).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use parquet::data_type::{DoubleType, Int64Type, Int96, Int96Type};
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::parser::parse_message_type;
+
+    use super::*;
+    use crate::data::{Channel, read_any_series};
+
+    /// Spark writes stamps of 96 bits, databases decimals.
+    #[test]
+    fn stamps_of_96_bits_and_decimals_are_read() {
+        let schema = "message log {
+            required int96 time;
+            required int64 x_m (DECIMAL(10,2));
+            required double y_m;
+        }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut writer =
+            SerializedFileWriter::new(Vec::<u8>::new(), schema, Arc::default()).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        // Nanoseconds of a day of 2025, which is counted as astronomers do.
+        let stamps = [0, 500_000_000, 1_000_000_000].map(|ns| Int96::from(vec![ns, 0, 2_461_000]));
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int96Type>().write_batch(&stamps, None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int64Type>().write_batch(&[0, 1025, 2050], None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<DoubleType>().write_batch(&[0.0; 3], None, None).unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.parquet");
+        std::fs::write(&path, writer.into_inner().unwrap()).unwrap();
+        let series = read_any_series(&path, None).unwrap().series;
+        assert_eq!(series.require(Channel::X).unwrap(), [0.0, 10.25, 20.5]);
+        let since_s = series.time_s()[2] - series.time_s()[0];
+        assert!((since_s - 1.0).abs() < 1e-5, "{since_s}");
+        assert!((series.time_s()[0] - 20_412.0 * 86_400.0).abs() < 1e-5);
+    }
 }
