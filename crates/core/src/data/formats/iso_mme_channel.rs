@@ -5,9 +5,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::data::DataError;
+use crate::units::significant;
 
 /// Lines of keys above the values of a channel.
 const MAX_KEYS: usize = 400;
+
+/// By how much a stated extreme may be off for its rounding, as a share of the range of the values.
+const ROUNDING: f64 = 0.01;
 
 /// A channel.
 pub(super) struct MmeChannel {
@@ -68,15 +72,35 @@ impl MmeChannel {
     /// What is in doubt of its samples and their times, in words.
     pub(super) fn remark(&self) -> Option<String> {
         let (code, n) = (self.code(), self.values.len());
-        match self.number("number of samples") {
-            Some(stated) if stated != n as f64 => {
-                Some(format!("{code} has {n} samples and says {stated}; is it cut?"))
-            }
-            _ if self.is_explicit() || self.number("time of first sample").is_some() => None,
-            _ => Some(format!(
-                "{code} does not say the time of its first sample; it is taken as 0 s"
-            )),
-        }
+        let cut = self.number("number of samples").filter(|stated| *stated != n as f64);
+        let cut = cut.map(|stated| format!("{code} has {n} samples and says {stated}; is it cut?"));
+        let has_start = self.is_explicit() || self.number("time of first sample").is_some();
+        cut.or_else(|| self.other_extreme()).or_else(|| {
+            (!has_start).then(|| {
+                format!("{code} does not say the time of its first sample; it is taken as 0 s")
+            })
+        })
+    }
+
+    /// That its largest or smallest value is another than it says.
+    fn other_extreme(&self) -> Option<String> {
+        let values = || self.values.iter().copied().flatten();
+        let (largest, smallest) = (values().reduce(f64::max)?, values().reduce(f64::min)?);
+        let extremes = [("maximum", largest), ("minimum", smallest)];
+        let other = |(word, found): (&str, f64)| {
+            let stated = self.number(&format!("first global {word} value"))?;
+            let is_other =
+                (stated - found).abs() > ROUNDING * (largest - smallest).max(stated.abs());
+            is_other.then(|| {
+                format!(
+                    "{} has the {word} {} and says {}; is it cut, filtered or in another unit?",
+                    self.code(),
+                    significant(found),
+                    significant(stated)
+                )
+            })
+        };
+        extremes.into_iter().find_map(other)
     }
 
     /// Whether its times are those of another channel.

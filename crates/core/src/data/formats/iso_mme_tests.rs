@@ -80,6 +80,26 @@ fn a_cut_channel_and_another_axis_are_said() {
     assert!(whole.len() == 1 && whole[0].contains("to the right and down"), "{whole:?}");
 }
 
+/// The extremes that laboratories write beside the samples tell of a channel that was changed later.
+#[test]
+fn an_extreme_that_is_not_among_the_samples_is_said() {
+    let remark = |largest: &str, smallest: &str| {
+        let keys = [
+            ("Channel code", "11SEAT000000ACXP"),
+            ("Time of first sample", "0"),
+            ("First global maximum value", largest),
+            ("First global minimum value", smallest),
+        ];
+        let text = channel(&keys, &["0", "-301.2", "12.5"]);
+        MmeChannel::parse("a.001".into(), &text).unwrap().remark()
+    };
+    assert_eq!(remark("12.5", "-301"), None);
+    assert_eq!(remark("NOVALUE", "NOVALUE"), None);
+    let other = remark("12.5", "-30.7").unwrap();
+    assert!(other.contains("the minimum -301.2 and says -30.7"), "{other}");
+    assert!(remark("1250", "-301.2").is_some());
+}
+
 /// A time in a unit that is none is no time in seconds, and one of two times is not guessed.
 #[test]
 fn a_time_that_is_not_known_is_none() {
