@@ -52,6 +52,10 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
     };
     let mut found = Found::default();
     for feature in features {
+        // Databases state it with each geometry.
+        let of_geometry = feature.geometry.as_ref().and_then(|of| of.foreign_members.as_ref());
+        let members = [feature.foreign_members.as_ref(), of_geometry];
+        system = system.or_else(|| members.into_iter().flatten().find_map(stated_system));
         let of = Described::new(feature.properties.unwrap_or_default());
         match feature.geometry {
             Some(geometry) => add(path, &mut found, &of, geometry.value, 0)?,

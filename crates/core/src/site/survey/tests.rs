@@ -90,6 +90,23 @@ fn the_system_of_a_grid_is_said_and_that_of_web_maps_refused() {
     assert!(error.contains("web maps"), "{error}");
 }
 
+/// A feature by itself and a geometry, as databases give them, have the system that a collection has.
+#[test]
+fn the_system_of_a_feature_or_a_geometry_counts() {
+    let system = r#""crs": {"type": "name", "properties": {"name": "EPSG:3857"}}"#;
+    let line =
+        r#""type": "LineString", "coordinates": [[1447153.4, 6800125.5], [1447185.8, 6800125.5]]"#;
+    for map in [
+        format!("{{{system}, {line}}}"),
+        format!(r#"{{"type": "Feature", {system}, "properties": {{}}, "geometry": {{{line}}}}}"#),
+        format!(r#"{{"type": "Feature", "properties": {{}}, "geometry": {{{system}, {line}}}}}"#),
+    ] {
+        let error = read("map.geojson", &map).unwrap_err();
+        assert!(error.contains("web maps"), "{map}: {error}");
+        assert!(read("map.geojson", &map.replace("3857", "25833")).is_ok(), "{map}");
+    }
+}
+
 /// Some systems count to the north first, and programs write their coordinates in that order.
 #[test]
 fn northing_before_easting_is_said_of_a_map_too() {
