@@ -46,7 +46,8 @@ fn times_in_row(cells: &[String]) -> Option<(String, Vec<f64>)> {
     if let Some(times) = plain {
         let name = column_name(first);
         let has_unit = matches!(trailing_unit(&name, Quantity::Time), Ok(Some(_)));
-        let is_time = has_unit && letters_and_digits(&name).starts_with("time");
+        let key = letters_and_digits(&name);
+        let is_time = has_unit && ["time", "zeit"].iter().any(|word| key.starts_with(word));
         return is_time.then(|| (first.clone(), times));
     }
     let with_unit = |cell: &String| {
@@ -82,6 +83,9 @@ mod tests {
         let expected = ["Time (s);Speed (MPH)", "-2;40", "-1;36"];
         let text = "Lamp;Off\nParameter;-2.0 sec;-1.0 sec\nSpeed (MPH);40;36\nas recorded\n";
         assert_eq!(turned(text), Some((1, expected.map(str::to_owned).to_vec())));
+        let expected = ["Zeit vor Kollision (s);Geschwindigkeit (km/h)", "0;36", "1;40"];
+        let text = "Zeit vor Kollision (s);1;0\nGeschwindigkeit (km/h);40;36\n";
+        assert_eq!(turned(text), Some((0, expected.map(str::to_owned).to_vec())));
     }
 
     #[test]
