@@ -13,8 +13,8 @@
 //!           3 and 6 counted), u8 of what it is master (1 time), u8 type, u8 first bit, u32 first byte, u32 bits,
 //!           u32 flags (1 all invalid, 2 has an invalidation bit), u32 its place
 //! type      0/1 whole, 2/3 with a sign, 4/5 float, each little and big endian; others are no numbers
-//! CC        links: name, unit …; data: u8 kind (0 none, 1 line), u8, u16, u16, u16 values, 2 f64, f64 values:
-//!           intercept, slope
+//! CC        links: name, unit …; data: u8 kind (0 none, 1 line, 2 quotient), u8, u16, u16, u16 values, 2 f64, f64
+//!           values: intercept, slope; of a quotient a, b, c, d, e, f of (a x² + b x + c) / (d x² + e x + f)
 //! TX, MD    text that ends with 0; in MD as XML with the text in TX
 //! ```
 
@@ -404,6 +404,14 @@ fn line(block: &Block<'_>) -> Result<[f64; 2], &'static str> {
         match (kind, n_values) {
             (0, _) => Ok(Some([0.0, 1.0])),
             (1, 2..) => Ok(Some([cursor.f64()?, cursor.f64()?])),
+            (2, 6..) => {
+                let mut read = || cursor.f64();
+                let [a, b, c] = [read()?, read()?, read()?];
+                let [d, e, f] = [read()?, read()?, read()?];
+                // Many programs write a line so.
+                let is_line = [a, d, e].iter().all(|factor| *factor == 0.0) && f != 0.0;
+                Ok(is_line.then(|| [c / f, b / f]))
+            }
             _ => Ok(None),
         }
     };
@@ -428,4 +436,30 @@ fn text(block: &Block<'_>) -> String {
         _ => Some(&*text),
     };
     plain(inside.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quotient_that_is_a_line_is_read_as_one() {
+        let of = |kind: u8, values: &[f64]| {
+            let n_values = (values.len() as u16).to_le_bytes();
+            let head = [&[kind, 0, 0, 0, 0, 0][..], &n_values, &[0; 16]].concat();
+            let numbers: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+            let data = [head, numbers].concat();
+            line(&Block { at: 0, id: *b"CC", links: &[], data: &data, data_at: 0 })
+        };
+        assert_eq!(of(1, &[3.0, 0.5]), Ok([3.0, 0.5]));
+        assert_eq!(of(2, &[0.0, 1.0, 6.0, 0.0, 0.0, 2.0]), Ok([3.0, 0.5]));
+        for curve in [
+            [1.0, 1.0, 6.0, 0.0, 0.0, 2.0],
+            [0.0, 1.0, 6.0, 0.0, 1.0, 2.0],
+            [0.0, 1.0, 6.0, 0.0, 0.0, 0.0],
+        ] {
+            assert_eq!(of(2, &curve), Err("its conversion is no line"), "{curve:?}");
+        }
+        assert_eq!(of(2, &[0.0, 1.0]), Err("its conversion is no line"));
+    }
 }
