@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::analysis::SecondContacts;
+use crate::analysis::{FEWEST_DRAWS, SecondContacts};
 use crate::word;
 use impactlab_core::collision::SecondContact;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatText};
@@ -149,30 +149,47 @@ fn second_contact_text(how: PhraseValue, time_s: f64, [x, y]: [f64; 2], speed_m_
     .with(not_computed())
 }
 
-/// The second contacts of draws, for a person.
+/// The second contacts of draws, for a person; of few of them without intervals, which would be too narrow.
 fn second_contacts_text(met: &SecondContacts) -> Phrase {
     let time = |s: f64| PhraseValue::fixed(Quantity::Time, s, 2);
     let speed = |m_s: f64| PhraseValue::fixed(Quantity::Speed, m_s, 1);
     let length = |m: f64| PhraseValue::fixed(Quantity::Length, m, 1);
+    let begun = |text: Phrase| {
+        text.with(meeting(2.0 * met.apart_share > 1.0))
+            .with(PhraseValue::Share(met.probability))
+            .with(PhraseValue::Name(met.n_draws.to_string()))
+            .with(time(met.time_s.median))
+    };
+    let n_met = (met.probability * met.n_draws as f64).round() as usize;
+    if n_met < FEWEST_DRAWS {
+        let text = Phrase::new(
+            "the vehicles {0} in {1} of {2} draws, in the median of these few at {3}, near x {4}, y {5}, \
+             closing at {6}: {7}",
+            "Die Fahrzeuge {0} in {1} von {2} Ziehungen, im Median dieser wenigen bei {3}, nahe x {4}, y {5}, \
+             mit {6} Annäherungsgeschwindigkeit. {7}",
+        );
+        return begun(text)
+            .with(length(met.x_m.median))
+            .with(length(met.y_m.median))
+            .with(speed(met.closing_speed_m_s.median))
+            .with(not_computed());
+    }
     let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety(), met.closing_speed_m_s.ninety());
-    Phrase::new(
+    let text = Phrase::new(
         "the vehicles {0} in {1} of {2} draws, at {3} (90 %: {4} to {5}), near x {6}, y {7}, \
          closing at {8} (90 %: {9} to {10}): {11}",
         "Die Fahrzeuge {0} in {1} von {2} Ziehungen, bei {3} (90 %: {4} bis {5}), nahe x {6}, y {7}, \
          mit {8} Annäherungsgeschwindigkeit (90 %: {9} bis {10}). {11}",
-    )
-    .with(meeting(2.0 * met.apart_share > 1.0))
-    .with(PhraseValue::Share(met.probability))
-    .with(PhraseValue::Name(met.n_draws.to_string()))
-    .with(time(met.time_s.median))
-    .with(time(from_s).bare())
-    .with(time(to_s).bare())
-    .with(length(met.x_m.median))
-    .with(length(met.y_m.median))
-    .with(speed(met.closing_speed_m_s.median))
-    .with(speed(slow).bare())
-    .with(speed(fast).bare())
-    .with(not_computed())
+    );
+    begun(text)
+        .with(time(from_s).bare())
+        .with(time(to_s).bare())
+        .with(length(met.x_m.median))
+        .with(length(met.y_m.median))
+        .with(speed(met.closing_speed_m_s.median))
+        .with(speed(slow).bare())
+        .with(speed(fast).bare())
+        .with(not_computed())
 }
 
 impl From<&SecondContacts> for FlagReport {
@@ -295,6 +312,30 @@ mod tests {
         let german = |flag: &FlagReport| flag.caveat.text_in(&german, &str::to_owned).unwrap();
         assert!(german(&roll).starts_with("Ein Wankwinkel von 34,4° bei 0,40 s"), "{roll:?}");
         assert!(german(&lift).contains("front left"), "{lift:?}");
+    }
+
+    /// “at 1.20 s (90 %: 1.20 to 1.20)” was said of one draw of 60.
+    #[test]
+    fn second_contacts_of_few_draws_have_no_intervals() {
+        let said = |n_met: usize| {
+            let estimate = |value: f64| Estimate::from_draws(vec![value; n_met]);
+            let text = second_contacts_text(&SecondContacts {
+                n_draws: 60,
+                probability: n_met as f64 / 60.0,
+                time_s: estimate(1.2),
+                x_m: estimate(3.0),
+                y_m: estimate(-1.0),
+                closing_speed_m_s: estimate(5.0),
+                apart_share: 1.0,
+            });
+            text.say(&NumberFormat::english(UnitSystem::Si))
+        };
+        let expected = "of 60 draws, in the median of these few at 1.20 s, near x 3.0 m, y -1.0 m, \
+                        closing at 5.0 m/s: ";
+        let few = said(1);
+        assert!(few.contains(expected) && !few.contains("90 %"), "{few}");
+        let many = said(FEWEST_DRAWS);
+        assert!(many.contains("at 1.20 s (90 %: 1.20 to 1.20), near x 3.0 m"), "{many}");
     }
 
     #[test]
