@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::response::evaluate::{MotionCaseMetrics, MotionCoverage};
 use impactlab_core::data::{finite_or_null, null_as_nan};
 use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::units::KILOMETRE_PER_HOUR_M_S;
 
 /// Mean, standard deviation and median.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -142,8 +143,6 @@ impl MeanStd {
     }
 }
 
-const KM_H_PER_M_S: f64 = 3.6;
-
 impl MotionMetrics {
     /// Metrics over trajectories.
     pub fn from_cases(cases: &[&MotionCaseMetrics]) -> Self {
@@ -162,8 +161,8 @@ impl MotionMetrics {
             rmse: RootMeanSquares {
                 x_m: over(&|case| case.error.rmse_x_m),
                 y_m: over(&|case| case.error.rmse_y_m),
-                vx_km_h: over(&|case| known(case.error.rmse_vx_body_m_s) * KM_H_PER_M_S),
-                vy_km_h: over(&|case| known(case.error.rmse_vy_body_m_s) * KM_H_PER_M_S),
+                vx_km_h: over(&|case| known(case.error.rmse_vx_body_m_s) / KILOMETRE_PER_HOUR_M_S),
+                vy_km_h: over(&|case| known(case.error.rmse_vy_body_m_s) / KILOMETRE_PER_HOUR_M_S),
                 yaw_rate_deg_s: over(&|case| known(case.error.rmse_yaw_rate_rad_s).to_degrees()),
             },
             final_heading_error_deg: over(&|case| {
