@@ -168,8 +168,9 @@ pub struct Analysis {
     pub footprint: Footprint,
     /// Contact force on the struck vehicle; `None` if no force acts or none is known.
     pub force: Option<ForceHistory>,
-    /// State of the struck vehicle at the start of the impact and the point where the force acts;
-    /// `None` without a force.
+    /// The struck vehicle at the start of the impact: its state, the point where the force acts, and what its
+    /// driver and systems are to do, of which `controls` is what came in the motion. `None` without a force,
+    /// but for pairs that are followed by the contact law alone.
     pub struck: Option<StruckVehicle>,
     /// What steers, drives, brakes and locks the wheels of the struck vehicle in the simulation.
     pub controls: Controls,

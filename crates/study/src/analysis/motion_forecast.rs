@@ -60,7 +60,7 @@ pub struct StruckVehicle {
     pub initial: VehicleState<f64>,
     /// Point where the force acts, in body axes.
     pub contact: ContactPoint,
-    /// What steers, brakes and locks the wheels.
+    /// What is to steer, brake and lock the wheels: histories, and drivers and systems that act by the motion.
     pub controls: Controls,
     /// Parts of the ground with their own friction. A forecast with a network leaves them out.
     pub friction_zones: Vec<FrictionZone>,
