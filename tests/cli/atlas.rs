@@ -227,6 +227,7 @@ fn mistakes_are_named() {
     let made = Made::new();
     for (args, part) in [
         (&["cell", "--set", "speed=200mph"][..], "48.28 km/h to 96.56 km/h"),
+        (&["cell", "--set", "speed=200mph", "--units", "us"][..], "30.00 mph to 60.00 mph"),
         (&["cell", "--set", "speed=fast"][..], "expected a number"),
         (&["cell", "--set", "esc=2"][..], "0: without ESC, 1: with ESC"),
         (&["cell", "--set", "mass=2000"][..], "expected one of speed, closing, esc"),

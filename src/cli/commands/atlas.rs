@@ -227,17 +227,23 @@ impl Held {
 impl HeldArgs {
     /// The bin of every axis.
     ///
+    /// - `units`: in which it is told what an axis has.
+    ///
     /// # Errors
     /// [`CliError::NoAxis`], [`CliError::AxisValue`], [`CliError::OutsideAtlas`],
     /// [`CliError::AxisSetTwice`].
-    pub(super) fn bins(&self, atlas: &Atlas) -> Result<Vec<Option<usize>>, CliError> {
+    pub(super) fn bins(
+        &self,
+        atlas: &Atlas,
+        units: UnitSystem,
+    ) -> Result<Vec<Option<usize>>, CliError> {
         let mut bins = vec![None; atlas.axes.len()];
         for (name, text) in &self.set {
             let idx = axis_idx(atlas, name)?;
             let (Some(axis), Some(slot)) = (atlas.axes.get(idx), bins.get_mut(idx)) else {
                 continue;
             };
-            if slot.replace(bin_of(axis, text)?).is_some() {
+            if slot.replace(bin_of(axis, text, units)?).is_some() {
                 return Err(CliError::AxisSetTwice { name: axis.word.clone() });
             }
         }
@@ -269,7 +275,7 @@ pub(super) fn axis_idx(atlas: &Atlas, name: &str) -> Result<usize, CliError> {
 }
 
 /// The bin in which a value lies that a person has typed; of a choice its number or its label.
-fn bin_of(axis: &Axis, text: &str) -> Result<usize, CliError> {
+fn bin_of(axis: &Axis, text: &str, units: UnitSystem) -> Result<usize, CliError> {
     let is_label = |label: &String| label.to_lowercase() == text.to_lowercase();
     if let Some(bin) = axis.labels.iter().position(is_label) {
         return Ok(bin);
@@ -285,7 +291,7 @@ fn bin_of(axis: &Axis, text: &str) -> Result<usize, CliError> {
         let ends = axis.edges.first().zip(axis.edges.last());
         let expected = match ends {
             Some((low, high)) => {
-                let [low, high] = [low, high].map(|end| quantity.shown(*end, UnitSystem::Si));
+                let [low, high] = [low, high].map(|end| quantity.shown(*end, units));
                 format!("{low} to {high}")
             }
             None => {
@@ -355,7 +361,8 @@ fn cell(
     args: &CellArgs,
     console: &mut Console<'_>,
 ) -> Result<(), CliError> {
-    let (bins, units) = (args.held.bins(atlas)?, args.units.into());
+    let units = args.units.into();
+    let bins = args.held.bins(atlas, units)?;
     let cell = atlas.cell(&bins);
     let outcome = |measure: Measure| {
         let told = cell.measure(measure);

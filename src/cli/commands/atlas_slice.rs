@@ -89,7 +89,7 @@ pub(super) fn run(
     if x == y {
         return Err(CliError::AxisTwice { name: args.x.clone() });
     }
-    let (measure, held) = (measure_of(&args.outcome)?, args.held.bins(atlas)?);
+    let (measure, held) = (measure_of(&args.outcome)?, args.held.bins(atlas, args.units.into())?);
     for (axis, name) in [(x, &args.x), (y, &args.y)] {
         if held.get(axis).is_some_and(Option::is_some) {
             return Err(CliError::AxisOfMapSet { name: name.clone() });
