@@ -190,6 +190,12 @@ fn a_plan_that_is_wrong_is_refused_with_its_place() {
         ("uniform = [15, 20]", "normal = [15, 2]", "with low and high"),
         ("list = [0, 1]", "list = [0, 2]", "a list of whole numbers, 0 to 1"),
         ("limit_s = 20", "limit_s = 1000", "plan.toml:9:11: pit.limit_s is 1000"),
+        // Each place was there twice.
+        (
+            "uniform = [15, 20]",
+            "steps = [15, 15, 2]",
+            "number of values from 2 to 10000] with low < high",
+        ),
         ("toyota-camry-2018", "camry", "not \"camry\""),
         // Every row had the first pair.
         (

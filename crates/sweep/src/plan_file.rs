@@ -310,11 +310,10 @@ impl VaryFile {
         } else if let Some([low, mode, high]) = self.triangular {
             Distribution::Triangular { low, mode, high }
         } else if let Some((low, high, n)) = self.steps {
-            if !(2..=MOST_STEPS).contains(&n) {
-                return wrong(
-                    "steps",
-                    &format!("[low, high, number of values from 2 to {MOST_STEPS}]"),
-                );
+            let rises = low < high;
+            if !rises || !(2..=MOST_STEPS).contains(&n) {
+                let counts = format!("number of values from 2 to {MOST_STEPS}");
+                return wrong("steps", &format!("[low, high, {counts}] with low < high"));
             }
             let at = |i: usize| low + (high - low) * i as f64 / (n - 1) as f64;
             let values = (0..n).map(|i| Value::from(at(i))).collect();
