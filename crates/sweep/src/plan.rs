@@ -393,7 +393,7 @@ impl Plan {
         if self.design == Design::Grid && (list.is_none() || !weights.is_empty()) {
             return Some((key, "list or steps, without weights: this is a grid".to_owned()));
         }
-        if let Some(expected) = unit_fault(&vary.unit) {
+        if let Some(expected) = unit_fault(&vary.unit, vary.at.iter().map(String::as_str)) {
             return Some((format!("{key}.unit"), expected));
         }
         match &self.question {
@@ -426,12 +426,13 @@ impl Plan {
                 return Some((key, format!("a name that no other column has, not {name:?}")));
             }
         }
-        if let Some(expected) = outcomes.iter().find_map(|(_, unit)| unit_fault(unit)) {
-            return Some(("request.outcomes".to_owned(), expected));
-        }
         if let SweptQuestion::Request(request) = &self.question {
             if let Some(outcome) = request.outcomes.iter().find(|it| !it.at.starts_with('/')) {
                 let expected = format!("places that begin with \"/\", not {:?}", outcome.at);
+                return Some(("request.outcomes".to_owned(), expected));
+            }
+            let fault_of = |it: &PickedOutcome| unit_fault(&it.unit, [it.at.as_str()]);
+            if let Some(expected) = request.outcomes.iter().find_map(fault_of) {
                 return Some(("request.outcomes".to_owned(), expected));
             }
             let is_missing = |at: &&String| request.request.pointer(at).is_none();

@@ -222,10 +222,17 @@ fn share_idx(share: f64, n: usize, weights: &[f64]) -> usize {
     index_of_share(weights.iter().copied(), share * total)
 }
 
-/// What is expected in place of a unit that numbers of requests and answers are not in; `None` for an SI unit, and
-/// for one of a quantity that the program does not know.
-pub(crate) fn unit_fault(unit: &str) -> Option<String> {
-    if Quantity::from_si_symbol(unit).is_some() {
+/// What is expected in place of a unit that numbers of requests and answers are not in; `None` for an SI unit, for
+/// one of a quantity that the program does not know, and where a key says that it is in this unit.
+///
+/// - `places`: where the number goes or comes from, as JSON pointers.
+pub(crate) fn unit_fault<'a>(
+    unit: &str,
+    places: impl IntoIterator<Item = &'a str>,
+) -> Option<String> {
+    let ending = format!("_{}", unit.replace('/', "_"));
+    let says_so = |place: &str| place.split('/').any(|key| key.ends_with(&ending));
+    if Quantity::from_si_symbol(unit).is_some() || places.into_iter().any(says_so) {
         return None;
     }
     let is_called = |quantity: &&Quantity| quantity.units().iter().any(|it| it.symbol == unit);
@@ -298,12 +305,18 @@ mod tests {
     #[test]
     fn a_unit_is_that_of_requests_and_answers() {
         for (unit, si) in [("km/h", "\"m/s\""), ("deg", "\"rad\""), ("%", "\"1\""), ("", "\"1\"")] {
-            assert!(unit_fault(unit).is_some_and(|expected| expected.starts_with(si)), "{unit}");
+            let told = unit_fault(unit, ["/end/speed"]);
+            assert!(told.is_some_and(|expected| expected.starts_with(si)), "{unit}");
         }
         // That of an acceleration, and of a mass.
-        assert!(unit_fault("g").is_some_and(|it| it.starts_with("\"m/s²\" or \"kg\":")));
+        assert!(unit_fault("g", []).is_some_and(|it| it.starts_with("\"m/s²\" or \"kg\":")));
         for unit in ["m/s", "rad", "1", "kg m²", "W"] {
-            assert_eq!(unit_fault(unit), None);
+            assert_eq!(unit_fault(unit, ["/end/speed"]), None);
+        }
+        // A principal direction of force is in degrees in some answers, and their keys say so.
+        for place in ["/force/pdof_deg", "/pdof_interval_deg/median"] {
+            assert_eq!(unit_fault("deg", [place]), None);
+            assert!(unit_fault("km/h", [place]).is_some());
         }
     }
 
