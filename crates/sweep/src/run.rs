@@ -75,7 +75,9 @@ pub fn run_chunks(
     if let Some(&chunk) = chunks.iter().find(|chunk| **chunk >= n_chunks) {
         return Err(SweepError::NoChunk { chunk, n_chunks });
     }
-    let answerer = Answerer::new(&plan, library)?;
+    // What is in memory may be of another content than the plan knows.
+    let anew = Library::default();
+    let answerer = Answerer::new(&plan, if plan.files.is_empty() { library } else { &anew })?;
     let n_rows = |chunk: u64| {
         let rows = plan.rows_of(chunk);
         rows.end - rows.start
@@ -173,7 +175,47 @@ pub fn chunks_of_task(
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
+    use impactlab_study::SeriesFile;
+
+    /// The plan was that of the file as it is, and the rows those of the file as it was opened in the window.
+    #[test]
+    fn a_file_that_has_changed_since_it_was_read_is_read_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let ask = serde_json::json!({
+            "question": "simulate",
+            "source": { "drive": {
+                "speed_m_s": 20.0,
+                "yaw_rate_rad_s": 0.0,
+                "force": { "path": at("force.csv") },
+            } },
+            "vehicle": { "Preset": "reference-2000" },
+            "duration_s": 1.0,
+        });
+        fs::write(at("ask.json"), ask.to_string()).unwrap();
+        let plan = "question = \"request\"\nn = 1\n[request]\nfile = \"ask.json\"\n\
+                    outcomes = [{ name = \"y_m\", at = \"/end/y_m\", unit = \"m\" }]\n\
+                    [vary.friction]\nat = \"/friction\"\nlist = [0.8]\n";
+        fs::write(at("plan.toml"), plan).unwrap();
+        let y_m = |sweep: &str, peak_n: u32, library: &Library| {
+            let force = format!("time_s,fx_n,fy_n\n0,0,0\n0.05,0,{peak_n}\n0.1,0,0\n");
+            fs::write(at("force.csv"), force).unwrap();
+            let plan = Plan::read(&at("plan.toml"), library).unwrap();
+            plan.write(&at(sweep)).unwrap();
+            let rows = read_rows(&run_chunk(&at(sweep), 0, library).unwrap()).unwrap();
+            assert_eq!(rows.reasons, [""]);
+            rows.outcomes[0].values[0]
+        };
+        let library = Library::default();
+        let weak_m = y_m("weak", 20_000, &library);
+        library.series(&SeriesFile::new(at("force.csv"))).unwrap();
+        let strong_m = y_m("strong", 40_000, &library);
+        assert_eq!(strong_m, y_m("again", 40_000, &Library::default()));
+        assert!(strong_m.abs() > 1.5 * weak_m.abs(), "{strong_m} {weak_m}");
+    }
 
     fn chunks(stride: Option<u64>, variables: &[(&str, &str)]) -> Result<Vec<u64>, SweepError> {
         chunks_of_task(8, stride, |name| {
