@@ -293,6 +293,9 @@ fn the_shipped_atlas_is_of_the_shipped_plans_and_networks() {
         1 << 15
     );
     assert_eq!(shipped["has_sensitivity"], true);
+    // Base points with a row that failed, or without the outcome, are in no index.
+    let indices = answer(&["atlas", "sensitivity", "--outcome", "turns_90"]);
+    assert!((900..=1024).contains(&indices["outcomes"][0]["n_bases"].as_u64().unwrap()));
     let out = folder.path().join("pit");
     answer(&["sweep", "plan", "assets/atlas/pit.toml", "--out", text(&out)]);
     let plan: serde_json::Value =

@@ -64,7 +64,7 @@ more_than, error, inside, at_rest}], row by row from the lowest y; x and y as in
     /// Which input moves an outcome: Sobol indices, alone and with the others
     #[command(after_help = "\
 Examples:\n  impactlab atlas sensitivity\n  impactlab atlas sensitivity --outcome turns_90\n\n\
-JSON: {note, outcomes [{outcome, indices [{name, first, first_error, total, total_error}]}]}")]
+JSON: {note, outcomes [{outcome, n_bases, indices [{name, first, first_error, total, total_error}]}]}")]
     Sensitivity(SensitivityArgs),
     /// Make an atlas of the rows of a sweep
     #[command(after_help = "\
@@ -418,6 +418,7 @@ struct OutcomeIndices {
     outcome: &'static str,
     #[serde(skip)]
     label: &'static str,
+    n_bases: u64,
     indices: Vec<Sensitivity>,
 }
 
@@ -432,7 +433,9 @@ fn sensitivity(
         |outcome: &&Outcome| wanted.is_none_or(|wanted| wanted == Measure::Mean(**outcome));
     let indices = |outcome: &Outcome| {
         let indices = atlas.sensitivity(*outcome)?;
-        Some(OutcomeIndices { outcome: outcome.name(), label: outcome.label(), indices })
+        let (outcome, label) = (outcome.name(), outcome.label());
+        let n_bases = atlas.sensitivity.iter().find(|of| of.outcome == outcome)?.n_bases;
+        Some(OutcomeIndices { outcome, label, n_bases, indices })
     };
     let outcomes: Vec<_> = Outcome::ALL.iter().filter(is_wanted).filter_map(indices).collect();
     if outcomes.is_empty() {
@@ -442,7 +445,7 @@ fn sensitivity(
     console.print(&printed, |out| {
         writeln!(out, "{note}")?;
         for of in &printed.outcomes {
-            writeln!(out, "\n{}", of.label)?;
+            writeln!(out, "\n{}, of {} base points", of.label, of.n_bases)?;
             let row = |index: &Sensitivity| {
                 let Sensitivity { name, first, first_error, total, total_error } = index;
                 vec![
