@@ -57,6 +57,12 @@ pub enum AxisError {
         /// The unit.
         unit: String,
     },
+    /// A label by which two values could be meant.
+    #[error("label {label:?} is there twice, or is the number of another one")]
+    Label {
+        /// The label.
+        label: String,
+    },
     /// A name or label without or with too many letters.
     #[error("a name or label has {n} letters, expected 1 to {MAX_LETTERS}")]
     Text {
@@ -194,7 +200,23 @@ impl Axis {
                 return Err(AxisError::Text { n });
             }
         }
-        Ok(())
+        match self.ambiguous_label() {
+            Some(label) => Err(AxisError::Label { label: label.clone() }),
+            None => Ok(()),
+        }
+    }
+
+    /// A label that names two values: small and large letters are the same, and a value is named by its number,
+    /// too.
+    fn ambiguous_label(&self) -> Option<&String> {
+        let lower: Vec<String> = self.labels.iter().map(|label| label.to_lowercase()).collect();
+        let is_other = |bin: usize, label: &String| {
+            let is_there = lower.iter().take(bin).any(|earlier| earlier == label);
+            let number = label.trim().parse::<usize>();
+            is_there || number.is_ok_and(|number| number != bin && number < lower.len())
+        };
+        let found = lower.iter().enumerate().position(|(bin, label)| is_other(bin, label));
+        found.and_then(|bin| self.labels.get(bin))
     }
 }
 
@@ -254,6 +276,20 @@ mod tests {
         let expected = [Some(0), Some(1), None, None, None];
         assert_eq!([0.0, 1.0, 2.0, 0.5, -1.0].map(|value| axis.locate(value)), expected);
         assert_eq!(axis.bin_text(1, UnitSystem::Si), "with");
+    }
+
+    /// `--set esc=1` was the value of number 0, as that had the label 1.
+    #[test]
+    fn a_label_names_one_value() {
+        let check = |labels: [&str; 2]| {
+            let labels = labels.map(str::to_owned).to_vec();
+            Axis { edges: Vec::new(), labels, unit: "1".to_owned(), ..speed() }.check()
+        };
+        assert_eq!(check(["0", "with"]), Ok(()));
+        assert_eq!(check(["2018", "2019"]), Ok(()));
+        for (labels, label) in [(["1", "0"], "1"), (["With", "with"], "with")] {
+            assert_eq!(check(labels), Err(AxisError::Label { label: label.to_owned() }));
+        }
     }
 
     #[test]
