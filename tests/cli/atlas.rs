@@ -197,6 +197,9 @@ fn a_map_is_a_table_a_picture_and_numbers() {
     assert!(printed.contains("Stability control: without ESC"), "{printed}");
     // The networks apply nowhere above 50 mph.
     assert_eq!(printed.matches("not to be relied upon").count(), 2, "{printed}");
+    // Nor does a car stand still there, of which the number of all rows was told.
+    let rests = made.printed(&[&slice[..], &["--outcome", "rest_time_s"]].concat());
+    assert_eq!(rests.matches("  0 of ").count(), 2, "{rests}");
 
     let csv = made.path("map.csv");
     made.answer(&[&slice[..], &["--out", text(&csv)]].concat());

@@ -146,12 +146,20 @@ fn table(slice: &Slice, measure: Measure, units: UnitsArg) -> Vec<Vec<String>> {
             slice.x.bin_text(idx % width, units),
             slice.y.bin_text(idx / width, units),
             measure_text(measure, cell, units),
-            cell.n_rows.to_string(),
+            rows_text(cell),
             percent(cell.inside),
             doubt_text(cell).to_owned(),
         ]
     };
     slice.cells.iter().enumerate().map(row).collect()
+}
+
+/// The rows of a cell, and of how many of them the measure is.
+fn rows_text(cell: &SliceCell) -> String {
+    match cell.n_applies == cell.n_rows {
+        true => cell.n_rows.to_string(),
+        false => format!("{} of {}", cell.n_applies, cell.n_rows),
+    }
 }
 
 fn write_picture(
