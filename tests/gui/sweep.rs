@@ -72,6 +72,11 @@ fn a_sweep_is_computed_goes_on_and_is_merged() {
     let merged = folder.path().join("rows.parquet");
     apply(&mut harness, Command::Write(Output::SweepRows, merged.clone()));
     step_until(&mut harness, "the rows", is_known);
+    harness.run_steps(2);
+    let said: Vec<&str> =
+        state(&harness).session.log.iter().map(|(_, message)| message.text.as_str()).collect();
+    let expected = "with 4 rows, 0 of them without an answer";
+    assert!(said.iter().any(|text| text.contains(expected)), "{said:?}");
     let rows = read_rows(&merged).expect("rows");
     assert_eq!(rows.index, [0, 1, 2, 3]);
     assert_eq!(rows.inputs.len(), 1);

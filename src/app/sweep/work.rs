@@ -91,5 +91,6 @@ pub fn merge(
     report: &mut ProgressCallback<'_>,
 ) -> Result<String, String> {
     let merged = impactlab_sweep::merge(folder, path, existing, report).map_err(told)?;
-    Ok(format!("{} written, with {} rows", path.display(), merged.rows))
+    let (path, rows, failed) = (path.display(), merged.rows, merged.failed);
+    Ok(format!("{path} written, with {rows} rows, {failed} of them without an answer"))
 }
