@@ -22,6 +22,9 @@ const NOT_THERE: &str = "it was not there when the case was saved either";
 /// Files and folders below a folder that are looked at to find out where it leads.
 const MAX_ENTRIES: usize = 500_000;
 
+/// Links to folders that are followed below a folder.
+const MAX_LINKS: usize = 1000;
+
 /// A file or a folder that a case uses, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -104,23 +107,35 @@ impl UsedFile {
     }
 }
 
-/// Names of all files in a folder and the folders in it, in their order, with `/` between the parts.
-/// What begins with a point is left out, and so are links to folders, which may lead round in a circle.
+/// Names of all files in a folder and the folders in it, in their order, with `/` between the parts. Links are
+/// followed, but for those that lead round in a circle. What begins with a point is left out.
 pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
-    let mut names = Vec::new();
-    let mut open = vec![String::new()];
-    while let Some(prefix) = open.pop() {
+    let (mut names, mut n_links) = (Vec::new(), 0);
+    // Each with the folders that the links on the way to it lead to.
+    let mut open = vec![(String::new(), vec![folder.canonicalize()?])];
+    while let Some((prefix, led_to)) = open.pop() {
         for entry in std::fs::read_dir(folder.join(&prefix))? {
             let entry = entry?;
             let name = entry.file_name().to_string_lossy().into_owned();
-            let (full, kind) = (format!("{prefix}{name}"), entry.file_type()?);
+            let (full, path) = (format!("{prefix}{name}"), entry.path());
             if name.starts_with('.') {
                 continue;
             }
-            if kind.is_dir() {
-                open.push(full + "/");
-            } else if entry.path().is_file() {
+            if path.is_file() {
                 names.push(full);
+            } else if entry.file_type()?.is_dir() {
+                open.push((full + "/", led_to.clone()));
+            } else if path.is_dir() {
+                let (from, to) = (folder.join(&prefix).canonicalize()?, path.canonicalize()?);
+                if led_to.iter().chain([&from]).any(|of| of.starts_with(&to)) {
+                    continue;
+                }
+                n_links += 1;
+                if n_links > MAX_LINKS {
+                    let why = format!("has more than {MAX_LINKS} links to folders");
+                    return Err(io::Error::other(why));
+                }
+                open.push((full + "/", [led_to.as_slice(), &[to]].concat()));
             }
         }
     }
@@ -369,6 +384,38 @@ mod tests {
         let variant = Variant { name: "a".to_owned(), questions, ..Variant::default() };
         let used = CaseFile::new("case", variant).used_paths();
         assert_eq!(used, [std::path::absolute("Cargo.toml").unwrap()]);
+    }
+
+    /// A package had no file of a folder that a data set links to, and no change of such a file was noticed.
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_is_linked_to_goes_with_the_one_that_has_the_link() {
+        use impactlab_core::data::Existing;
+        use std::os::unix::fs::symlink;
+
+        let folder = tempfile::tempdir().unwrap();
+        let [set, far, zip, there] =
+            ["set", "far", "a.zip", "there"].map(|name| folder.path().join(name));
+        for (path, text) in [(set.join("cases.csv"), "case\n1\n"), (far.join("1.csv"), "t\n0\n")] {
+            std::fs::create_dir(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        }
+        symlink(&far, set.join("forces")).unwrap();
+        symlink(&set, set.join("round")).unwrap();
+        symlink(&set, far.join("back")).unwrap();
+        assert_eq!(files_in(&set).unwrap(), ["cases.csv", "forces/1.csv"]);
+        let before = UsedFile::read(&set).unwrap();
+        let check = crate::CheckRequest { paths: vec![set.clone()], all: false, map: None };
+        let questions = vec![Request::from(check)];
+        let variant = Variant { name: "a".to_owned(), questions, ..Variant::default() };
+        let case = CaseFile::new("case", variant);
+        let packed = crate::case_file::pack(&case, &zip, Existing::Refuse).unwrap();
+        let names: Vec<&str> = packed.iter().map(|file| file.name.as_str()).collect();
+        assert_eq!(names, ["files/0/set/cases.csv", "files/0/set/forces/1.csv"]);
+        let opened = CaseFile::load(&crate::case_file::unpack(&zip, &there).unwrap()).unwrap();
+        assert!(opened.changes().is_empty(), "{:?}", opened.changes());
+        std::fs::write(far.join("1.csv"), "t\n1\n").unwrap();
+        assert_ne!(UsedFile::read(&set).unwrap(), before);
     }
 
     /// The report of one variant named the others in its log, also those that were removed.
