@@ -133,6 +133,26 @@ fn a_package_of_what_is_asked_has_no_drafts() {
     }
 }
 
+/// The package of a case whose network was just trained said nothing of the network that it lacks.
+#[test]
+fn a_package_says_which_network_it_lacks() {
+    let folder = TempDir::new().unwrap();
+    let [path, zip] = ["pit.impactlab", "pit.zip"].map(|name| folder.path().join(name));
+    let mut case = json(&fs::read_to_string("assets/examples/pit.impactlab").unwrap());
+    let question = &mut case["variants"][0]["questions"][2];
+    assert_eq!(question["model"], "shipped");
+    question["model"] = serde_json::json!({"held": "my cars"});
+    fs::write(&path, case.to_string()).unwrap();
+    let said = ok(command(&["case", "pack", text(&path)], &zip).output().unwrap());
+    assert!(said.contains("warning: the network my cars is in no file"), "{said}");
+    let args = ["case", "pack", text(&path), "--overwrite", "--json"];
+    let answer = json(&ok(command(&args, &zip).output().unwrap()));
+    assert_eq!(answer["networks_in_no_file"], serde_json::json!(["my cars"]));
+    let pack = ["case", "pack", "assets/examples/pit.impactlab", "--overwrite"];
+    let said = ok(command(&pack, &zip).output().unwrap());
+    assert!(!said.contains("warning"), "{said}");
+}
+
 #[test]
 fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
     let folder = TempDir::new().unwrap();

@@ -25,7 +25,7 @@ use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use impactlab_core::error_chain;
 use impactlab_core::jobs::ProgressCallback;
 use impactlab_study::case_file::{CaseFile, CaseOnDisk, LogEntry, PackedFile, UsedModel, pack};
-use impactlab_study::{MotionSource, Request, SeriesFile};
+use impactlab_study::{MotionSource, SeriesFile};
 
 /// The finished example case.
 const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
@@ -430,10 +430,11 @@ impl State {
     fn take_packed_case(&mut self, packed: Result<PackedCase, String>) {
         match packed {
             Ok(PackedCase { event, message, n_cases }) => {
+                self.say(Severity::Info, message);
                 if n_cases == self.session.n_cases {
                     self.case.file.note(event);
+                    self.say_unsaved_networks();
                 }
-                self.say(Severity::Info, message);
             }
             Err(why) => self.say(Severity::Error, why),
         }
@@ -466,16 +467,7 @@ impl State {
 
     /// Says which networks of the case are in no file, so that nobody else can ask them.
     fn say_unsaved_networks(&mut self) {
-        let is_held =
-            self.case.file.variants.iter().flat_map(|variant| &variant.questions).any(|of| {
-                let model = match of {
-                    Request::PredictForce(of) => Some(&of.model),
-                    Request::PredictMotion(of) => Some(&of.response_model),
-                    _ => None,
-                };
-                matches!(model, Some(impactlab_study::ModelChoice::Held { .. }))
-            });
-        if is_held {
+        if !self.case.file.networks_in_no_file().is_empty() {
             let why = "a network of this case was trained here and is in no file: save it (File, Save … model) so that the case can be run elsewhere";
             self.say(Severity::Warning, why);
         }

@@ -83,7 +83,8 @@ struct CheckArgs {
 /// Write one zip of a case and every file that its questions use, and list them
 #[derive(Debug, Args)]
 #[command(after_help = "\
-JSON: out, files [{name, path}]: the name of each file in the zip, and where it was read")]
+JSON: out, files [{name, path}]: the name of each file in the zip, and where it was read;
+  networks_in_no_file [..], which the zip does not have")]
 struct PackArgs {
     /// The case
     #[arg(value_name = "CASE.impactlab")]
@@ -162,6 +163,8 @@ fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliErr
 struct Package<'a> {
     out: &'a Path,
     files: &'a [PackedFile],
+    #[serde(skip_serializing_if = "<[&str]>::is_empty")]
+    networks_in_no_file: &'a [&'a str],
 }
 
 fn pack_case(args: &PackArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
@@ -177,13 +180,22 @@ fn pack_case(args: &PackArgs, console: &mut Console<'_>) -> Result<Verdict, CliE
         case.note("packed; edited since it was saved");
     }
     let files = pack(&case, &args.out, args.overwrite.into())?;
-    console.print(&Package { out: &args.out, files: &files }, |out| {
+    let networks = case.networks_in_no_file();
+    let packed = Package { out: &args.out, files: &files, networks_in_no_file: &networks };
+    console.print(&packed, |out| {
         for PackedFile { name, path } in &files {
             writeln!(out, "{name}: {}", shown_path(path))?;
         }
         writeln!(out, "{} written", shown_path(&args.out))?;
         for unused in case.unused() {
             writeln!(out, "note: {}", within_line(&unused))?;
+        }
+        for name in &networks {
+            let name = within_line(name);
+            writeln!(
+                out,
+                "warning: the network {name} is in no file and so not in the package; save it in the window that trained it"
+            )?;
         }
         print_changes(out, edited.as_slice())
     })?;

@@ -21,6 +21,7 @@ use crate::case_file::on_disk::sealed;
 use crate::case_file::portable::portable_name;
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
+use crate::{ForceSource, ModelChoice, Request};
 use impactlab_core::data::write::{WriterLock, check_ending, check_inputs};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, open_file, read_utf8, write_atomically};
 
@@ -118,6 +119,33 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
         Ok(())
     })?;
     Ok(entries)
+}
+
+impl CaseFile {
+    /// Names of the networks that questions ask and that stand in no file, such as those that were just trained:
+    /// no package has them, and nobody else can ask them.
+    pub fn networks_in_no_file(&self) -> Vec<&str> {
+        let questions = self.variants.iter().flat_map(|variant| &variant.questions);
+        let asked = questions.flat_map(|question| match question {
+            Request::PredictForce(of) => [Some(&of.model), None],
+            Request::PredictMotion(of) => {
+                let force = match &of.force {
+                    ForceSource::Predicted(model) => Some(model),
+                    ForceSource::File(_) | ForceSource::Given => None,
+                };
+                [Some(&of.response_model), force]
+            }
+            _ => [None, None],
+        });
+        let held = asked.flatten().filter_map(|model| match model {
+            ModelChoice::Held { held } => Some(held.as_str()),
+            ModelChoice::Source(_) => None,
+        });
+        let mut names: Vec<&str> = held.collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
 }
 
 /// What a case says in a package in place of a path that leads to none of its files, such as that of a view

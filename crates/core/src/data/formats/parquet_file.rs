@@ -304,7 +304,6 @@ mod tests {
     use parquet::file::writer::SerializedFileWriter;
     use parquet::schema::parser::parse_message_type;
 
-    use super::*;
     use crate::data::{Channel, read_any_series};
 
     /// Spark writes stamps of 96 bits, databases decimals.
