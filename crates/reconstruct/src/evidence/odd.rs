@@ -4,11 +4,12 @@
 //! - Stated standard deviations in centimetres where metres are asked for, or as a share where the quantity is. One
 //!   that is too small makes an item outweigh all others, one that is too large makes it say nothing, and neither is
 //!   seen in the answer.
+//! - Bounds of a record that leave no room for its error.
 //! - Drag factors that the road does not allow.
 
 use crate::evidence::{
     Bounds, Choice, Evidence, Field, Fields, Item, Items, PlaceMut, PointsMut, Section, Sigma,
-    Stated, Word,
+    Stated, Word, ends,
 };
 use impactlab_core::units::{Phrase, PhraseValue};
 
@@ -17,6 +18,10 @@ use impactlab_core::units::{Phrase, PhraseValue};
 const ABOVE: f64 = 30.0;
 /// Factor by which it is smaller. A scanner or a scale is up to 60 times as exact as a tape or the mass of a type.
 const BELOW: f64 = 100.0;
+
+/// Distance of the bounds of a record over its size below which nobody meant its error: recorders are off by up to a
+/// tenth to either side (49 CFR 563.8), and the best of them by a fifth of that.
+const NARROWEST: f64 = 0.04;
 
 impl Evidence {
     /// What is hardly meant as it is stated, in words: standard deviations far from what such an item is known to,
@@ -76,6 +81,32 @@ impl OfItem<'_> {
         .with(PhraseValue::three_digits(quantity, usual));
         self.found.sigmas.push(text);
     }
+
+    /// The end that is larger in size; the other one may be next to nothing.
+    fn judge_ends(&mut self, field: &Field, bounds: Option<Bounds>) {
+        let ends = bounds.iter().flatten().flatten().copied();
+        if let Some(end) = ends.max_by(|a: &f64, b: &f64| a.abs().total_cmp(&b.abs())) {
+            self.judge_number(field, end);
+        }
+    }
+
+    fn judge_distance(&mut self, field: &Field, bounds: Option<Bounds>) {
+        let Some([low, high]) = ends(bounds) else { return };
+        if high - low >= NARROWEST * low.abs().max(high.abs()) {
+            return;
+        }
+        let text = Phrase::new(
+            "{0}.{1} and {2} lie {3} apart, and recorders are off by up to 10 %: give the bounds between which the \
+             change of velocity may lie",
+            "{0}.{1} und {2} liegen {3} auseinander, Unfalldatenspeicher weichen aber um bis zu 10 % ab: die Grenzen \
+             angeben, zwischen denen die Geschwindigkeitsänderung liegen kann",
+        )
+        .with(PhraseValue::Name(self.table.clone()))
+        .with(PhraseValue::Name(field.si_key_with("_min")))
+        .with(PhraseValue::Name(field.si_key_with("_max")))
+        .with(PhraseValue::three_digits(field.range.quantity, high - low));
+        self.found.sigmas.push(text);
+    }
 }
 
 impl Fields for OfItem<'_> {
@@ -106,12 +137,14 @@ impl Fields for OfItem<'_> {
         self.judge_sigma(sigma, 0.0, *points.sigma_m);
     }
 
-    /// The end that is larger in size; the other one may be next to nothing.
     fn bounds(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
-        let ends = bounds.iter().flatten().flatten().copied();
-        if let Some(end) = ends.max_by(|a: &f64, b: &f64| a.abs().total_cmp(&b.abs())) {
-            self.judge_number(field, end);
-        }
+        self.judge_ends(field, *bounds);
+        self.judge_distance(field, *bounds);
+    }
+
+    /// What somebody takes to be possible may be one value.
+    fn interval(&mut self, field: &Field, bounds: &mut Option<Bounds>) {
+        self.judge_ends(field, *bounds);
     }
 
     fn choice<W: Word>(&mut self, _: &Choice, _: &mut W) {}
@@ -124,8 +157,8 @@ impl Fields for OfItem<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::Mark;
     use crate::evidence::examples::{SPIN, read};
+    use crate::evidence::{Edr, Mark};
 
     fn said(evidence: &Evidence) -> Vec<String> {
         evidence.odd_values().iter().map(|phrase| phrase.say(&Default::default())).collect()
@@ -150,6 +183,25 @@ mod tests {
         evidence.struck_car.mass_kg = stated(1900.0, 1.0);
         evidence.marks[0].sigma_m = Some(0.003);
         assert_eq!(said(&evidence), Vec::<String>::new());
+    }
+
+    /// The change of velocity of a recorder with one value for both bounds counted as known within 4 %.
+    #[test]
+    fn a_record_without_its_error_is_named() {
+        let mut evidence = read(SPIN);
+        let mut of_record = |low, high| -> Vec<String> {
+            let delta_v_x_m_s = Some([Some(low), Some(high)]);
+            evidence.edr = Some(Edr { delta_v_x_m_s, ..evidence.recorder() });
+            evidence.prior.struck_speed_m_s = Some([Some(0.0), Some(0.0)]);
+            said(&evidence)
+        };
+        let found = of_record(-10.0, -10.0);
+        assert_eq!(found.len(), 1, "{found:?}");
+        let begin = "edr.delta_v_x_min_m_s and delta_v_x_max_m_s lie ";
+        assert!(found[0].starts_with(begin), "{found:?}");
+        assert_eq!(of_record(9.9, 10.1).len(), 1);
+        assert!(of_record(-11.0, -9.0).is_empty() && of_record(-0.05, 0.05).is_empty());
+        assert!(of_record(0.0, 0.0).is_empty(), "no change has no error in per cent");
     }
 
     #[test]
