@@ -1,4 +1,5 @@
-//! Marks of a collision that lead back to where it was: cars move away from there.
+//! Marks that lead back to where a collision was, from which cars move away, or away from where a single car came to
+//! rest.
 
 use crate::evidence::{Evidence, Mark, Section, mark};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
@@ -10,15 +11,35 @@ const BACK_M: f64 = 4.0;
 const STRIKING_BACK_M: f64 = 10.0;
 
 impl Evidence {
-    /// The marks that lead back to the impact, in words.
+    /// The marks that lead back to the impact, or of a single car away from its rest, in words.
     pub fn odd_courses(&self) -> Vec<Phrase> {
         if self.is_single_car() {
-            return Vec::new();
+            let rest_m = self.rest.and_then(|rest| rest.place_m());
+            return rest_m.map_or_else(Vec::new, |rest_m| away_from_rest(&self.marks, rest_m));
         }
         let struck = odd_marks(mark::STRUCK, &self.marks, BACK_M);
         let striking = odd_marks(mark::STRIKING, &self.striking_marks, STRIKING_BACK_M);
         struck.chain(striking).collect()
     }
+}
+
+/// Marks of a single car that end farther from its rest than they begin; where it started may follow from them alone.
+fn away_from_rest(marks: &[Mark], [rest_x, rest_y]: [f64; 2]) -> Vec<Phrase> {
+    let off_m = |[x, y]: [f64; 2]| (x - rest_x).hypot(y - rest_y);
+    let told = |(idx, mark): (usize, &Mark)| {
+        let away_m = off_m(*mark.points_m.last()?) - off_m(*mark.points_m.first()?);
+        let text = Phrase::new(
+            "{0} {1} ends {2} farther from the place at rest than it begins, and the car moved towards there: give its \
+             points in the order of time",
+            "{0} {1} endet {2} weiter von der Endlage entfernt, als sie beginnt, das Fahrzeug bewegte sich aber dorthin: \
+             die Punkte in zeitlicher Reihenfolge angeben",
+        )
+        .with(PhraseValue::Term(mark::STRUCK.title.to_owned()))
+        .with(PhraseValue::Name((idx + 1).to_string()))
+        .with(PhraseValue::fixed(Quantity::Length, away_m, 1));
+        (away_m > BACK_M).then_some(text)
+    };
+    marks.iter().enumerate().filter_map(told).collect()
 }
 
 fn odd_marks(section: Section, marks: &[Mark], most_m: f64) -> impl Iterator<Item = Phrase> {
@@ -63,8 +84,16 @@ mod tests {
         assert_eq!(found.len(), 2, "{found:?}");
         assert!(found[0].starts_with("tire mark 3 ends 35.2 m nearer to the place"), "{found:?}");
         assert!(found[1].starts_with("tire mark 4 ends 23.4 m nearer to the place"), "{found:?}");
-        // The axes of a single car are free.
+        // The axes of a single car are free, and its rest is known.
         evidence.kind = EvidenceKind::SingleCar;
+        let found: Vec<String> =
+            evidence.odd_courses().iter().map(|of| of.say(&Default::default())).collect();
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            found[0].starts_with("tire mark 3 ends 35.2 m farther from the place"),
+            "{found:?}"
+        );
+        evidence.rest = None;
         assert!(evidence.odd_courses().is_empty());
     }
 
