@@ -84,7 +84,7 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
     };
     let damage = damage_off_car(&evidence.damage, cars);
     let odd = evidence.odd().into_iter().chain(evidence.odd_rests(cars));
-    let odd = odd.chain(hidden_zones(zones));
+    let odd = odd.chain(evidence.odd_distances(cars)).chain(hidden_zones(zones));
     let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
     vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
 }

@@ -17,6 +17,7 @@ mod mirror;
 mod odd;
 mod odd_copy;
 mod odd_course;
+mod odd_distance;
 mod odd_drag;
 mod odd_rest;
 mod places;
