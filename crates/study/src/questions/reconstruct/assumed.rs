@@ -1,6 +1,7 @@
 //! What the evidence leaves open and the program fills: every distribution of the prior that nobody stated,
 //! with the key that states it.
 
+use crate::questions::reconstruct::impact_place::impact_place;
 use crate::questions::reconstruct::single_car;
 use impactlab_core::uncertainty::{Caveat, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
@@ -191,6 +192,7 @@ pub(super) fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Cave
     let own = if is_single_car { single_car::GROUPS } else { &[] };
     let groups = own.iter().chain(GROUPS.iter().filter(is_common));
     let mut all: Vec<Caveat> = groups.filter_map(|group| group.caveat(prior)).collect();
+    all.extend(impact_place(evidence));
     let mut add = |subject, value: Phrase, [en, de]: [&str; 2]| {
         all.push(Caveat::assumed(subject, value, Phrase::new(en, de)));
     };
