@@ -45,6 +45,8 @@ enum DefaultSigma {
     Fixed(f64),
     /// A share of the value.
     Share(f64),
+    /// A share of what the value, itself a share, lacks to 1.
+    OfRest(f64),
 }
 
 impl HandField {
@@ -69,6 +71,18 @@ impl HandField {
         share: f64,
     ) -> Self {
         let sigma = DefaultSigma::Share(share);
+        Self { key, label, range, default: HandDefault::Required, needs: None, rule: None, sigma }
+    }
+
+    /// A share of a whole that the method needs, with a standard deviation that is a share of what it lacks to 1: the
+    /// whole is exact.
+    pub(super) const fn part(
+        key: &'static str,
+        label: &'static str,
+        range: Range,
+        share: f64,
+    ) -> Self {
+        let sigma = DefaultSigma::OfRest(share);
         Self { key, label, range, default: HandDefault::Required, needs: None, rule: None, sigma }
     }
 
@@ -118,6 +132,7 @@ impl HandField {
         match self.sigma {
             DefaultSigma::Fixed(sigma) => sigma,
             DefaultSigma::Share(share) => share * value.abs(),
+            DefaultSigma::OfRest(share) => share * (1.0 - value).abs(),
         }
     }
 

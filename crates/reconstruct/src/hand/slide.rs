@@ -33,6 +33,10 @@ const DRAG_SIGMA: f64 = 0.07;
 /// Standard deviation of a grade where none is stated.
 const GRADE_SIGMA: f64 = 0.01;
 
+/// Standard deviation of the share of the braked wheels where none is stated, over what lacks to all wheels: how the load
+/// of the car and of its braking divide between axles is seldom known. A rule of ours.
+const BRAKED_SHARE_SIGMA: f64 = 0.25;
+
 /// Keys of distance, friction and grade of each surface.
 const SURFACES: [[&str; 3]; 4] = [
     ["distance", "friction", "grade"],
@@ -104,7 +108,13 @@ pub(super) const SKID: Formula = Formula {
         DISTANCE,
         FRICTION,
         GRADE.or(0.0),
-        HandField::new("braked_share", "share of the braked wheels", FRICTION_SHARE, 0.0).or(1.0),
+        HandField::part(
+            "braked_share",
+            "share of the braked wheels",
+            FRICTION_SHARE,
+            BRAKED_SHARE_SIGMA,
+        )
+        .or(1.0),
         END_SPEED.or(0.0),
         HandField::relative(
             "other_speed",
@@ -232,8 +242,8 @@ mod tests {
     use super::*;
     use crate::evidence::Stated;
     use crate::hand::HandMethod::{Skid, SpinOut};
-    use crate::hand::HandQuestion;
     use crate::hand::calculation::tests::{near, solved};
+    use crate::hand::{HandInputs, HandQuestion};
     use impactlab_core::units::NumberFormat;
 
     const G: f64 = STANDARD_GRAVITY_M_S2;
@@ -293,6 +303,22 @@ mod tests {
         let skid = solved(Skid, &[("distance_m", 25.0), ("friction", 0.72)])[0];
         near(&[with(1.0, 0.0), with(0.25, 0.0)], &[skid, skid / 2.0]);
         near(&[with(1.0, 10.0)], &[skid.hypot(10.0)]);
+    }
+
+    /// A car of which only the front wheels braked counted as known to the last digit, and nothing said so.
+    #[test]
+    fn a_part_of_the_wheels_has_an_error_and_all_of_them_have_none() {
+        let sigma = |share: Option<f64>| {
+            let stated = |value: f64| Stated { value: Some(value), sigma: None };
+            let mut inputs = HandInputs::new();
+            inputs.insert("distance_m".to_owned(), stated(30.0));
+            inputs.insert("friction".to_owned(), stated(0.7));
+            inputs.extend(share.map(|share| ("braked_share".to_owned(), stated(share))));
+            let question = HandQuestion { method: Skid, inputs: &inputs, points_m: &[] };
+            let numbers = question.numbers().unwrap();
+            numbers.iter().find(|of| of.field.key == "braked_share").unwrap().sigma
+        };
+        near(&[sigma(None), sigma(Some(1.0)), sigma(Some(0.6))], &[0.0, 0.0, 0.1]);
     }
 
     /// Only the first of several surfaces was looked at.
