@@ -317,18 +317,22 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     let mut harness = desk.open(&[motions.as_str(), forces.as_str()]);
     step_until(&mut harness, "the data", is_idle);
     {
-        let form = &mut harness.state_mut().state_mut().project.networks.compare;
-        form.config = ConfigChoice::File(desk.path("response.toml"));
-        (form.trajectories, form.choices) = (vec![3], 1);
+        let form = &mut harness.state_mut().state_mut().project.networks;
+        form.compare.config = ConfigChoice::File(desk.path("response.toml"));
+        (form.compare.trajectories, form.compare.choices) = (vec![3], 1);
+        form.train_force.epochs = Some(2);
+        form.train_force.training.config = ConfigChoice::File(desk.path("force.toml"));
     }
+    // The baselines of an evaluation are fitted to what the model has learned from: here to few cases.
+    train(&mut harness);
     let n_archived = |n: usize| move |state: &State| state.session.archive.list.entries.len() == n;
     apply(&mut harness, Command::Compare(ComparisonCommand::Start));
-    step_until(&mut harness, "the comparison", n_archived(1));
+    step_until(&mut harness, "the comparison", n_archived(2));
     let compared = state(&harness).session.response.comparison.report().expect("one").clone();
     apply(&mut harness, Command::Compare(ComparisonCommand::Evaluate));
-    step_until(&mut harness, "the evaluation of the response model", n_archived(2));
+    step_until(&mut harness, "the evaluation of the response model", n_archived(3));
     apply(&mut harness, Command::Evaluate);
-    step_until(&mut harness, "the evaluation of the force model", n_archived(3));
+    step_until(&mut harness, "the evaluation of the force model", n_archived(4));
     let evaluated = state(&harness).session.force.evaluation.ok().expect("one").report.clone();
     desk.store(&mut harness);
     drop(harness);
