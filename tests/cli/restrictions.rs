@@ -108,6 +108,15 @@ fn the_table_of_a_plan_has_time_and_heading_of_every_path() {
     }
 }
 
+/// A car that steers along a file has struck nothing, and nobody has struck it.
+#[test]
+fn the_vehicle_of_a_drive_without_a_collision_is_no_struck_one() {
+    let steer = "docs/guide/examples/steering.csv";
+    let printed = run(&["simulate", "--steer", steer, "--speed", "50km/h"]);
+    assert!(printed.contains("assumed vehicle: reference-2000"), "{printed}");
+    assert!(!printed.contains("struck"), "{printed}");
+}
+
 #[test]
 fn what_was_assumed_is_in_the_table_of_a_simulation() {
     let folder = TempDir::new().unwrap();

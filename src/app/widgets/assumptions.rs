@@ -133,6 +133,7 @@ fn cell_ui(ui: &mut Ui, width: f32, text: RichText) -> Response {
 fn place(subject: CaveatSubject) -> Place {
     Some(match subject {
         CaveatSubject::Vehicle
+        | CaveatSubject::Driven
         | CaveatSubject::Striking
         | CaveatSubject::Speed
         | CaveatSubject::ContactPoint => ("Set it in the Vehicle pane", Pane::Vehicle),

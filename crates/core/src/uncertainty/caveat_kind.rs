@@ -100,6 +100,8 @@ pub enum CaveatKind {
 pub enum CaveatSubject {
     /// The struck vehicle.
     Vehicle,
+    /// A vehicle that drives and has struck nothing.
+    Driven,
     /// The striking vehicle.
     #[serde(rename = "bullet")]
     Striking,
@@ -226,6 +228,7 @@ impl CaveatSubject {
     pub fn label(self) -> &'static str {
         match self {
             Self::Vehicle => "struck vehicle",
+            Self::Driven => "vehicle",
             Self::Striking => "striking vehicle",
             Self::VehicleParameter => "parameter of the vehicle",
             Self::StrikingParameter => "parameters of the striking vehicle",
@@ -250,6 +253,7 @@ impl CaveatSubject {
         }
         match self {
             Self::Vehicle => "gestoßenes Fahrzeug",
+            Self::Driven => "Fahrzeug",
             Self::Striking => "stoßendes Fahrzeug",
             Self::VehicleParameter => "Parameter des Fahrzeugs",
             Self::StrikingParameter => "Parameter des stoßenden Fahrzeugs",

@@ -76,6 +76,17 @@ pub(crate) enum OpenVehicle<'a> {
     OfScenario(Option<&'a str>),
     /// Nothing: the question is not about a data set.
     Unknown,
+    /// Nothing, of a vehicle that drives and has struck nothing.
+    Driven,
+}
+
+impl OpenVehicle<'_> {
+    fn subject(&self) -> CaveatSubject {
+        match self {
+            Self::OfDataset(_) | Self::OfScenario(_) | Self::Unknown => CaveatSubject::Vehicle,
+            Self::Driven => CaveatSubject::Driven,
+        }
+    }
 }
 
 /// The struck vehicle; one that nobody named is added to the caveats, and what no car has.
@@ -85,7 +96,7 @@ pub(crate) fn struck_vehicle(
     caveats: &mut Caveats,
 ) -> Result<VehicleParameters, StudyError> {
     let vehicle = named_or_learned(choice, open, caveats)?;
-    caveats.extend(unusual(&vehicle, CaveatSubject::Vehicle));
+    caveats.extend(unusual(&vehicle, open.subject()));
     Ok(vehicle)
 }
 
@@ -107,7 +118,7 @@ fn named_or_learned(
         OpenVehicle::OfDataset(_) => {
             Phrase::new("the data set has no vehicle.toml", "der Datensatz hat keine vehicle.toml")
         }
-        OpenVehicle::OfScenario(_) | OpenVehicle::Unknown => {
+        OpenVehicle::OfScenario(_) | OpenVehicle::Unknown | OpenVehicle::Driven => {
             Phrase::new("no vehicle was named", "kein Fahrzeug ist benannt")
         }
     };
@@ -117,7 +128,7 @@ fn named_or_learned(
          --vehicle",
     )
     .with(PhraseValue::phrase(reason));
-    caveats.push(Caveat::assumed(CaveatSubject::Vehicle, name_of(DEFAULT_VEHICLE.id()), reason));
+    caveats.push(Caveat::assumed(open.subject(), name_of(DEFAULT_VEHICLE.id()), reason));
     Ok(DEFAULT_VEHICLE.parameters())
 }
 

@@ -345,7 +345,7 @@ impl Question for ReplayRequest {
     ) -> Result<Outcome<ReplayAnswer>, StudyError> {
         let mut caveats = Caveats::default();
         let record = self.record()?;
-        let vehicle = struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut caveats)?;
+        let vehicle = struck_vehicle(&self.vehicle, &OpenVehicle::Driven, &mut caveats)?;
         let vehicle = match self.friction {
             Some(friction) => vehicle.with_friction(friction),
             None => vehicle,

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{AnalysisError, DriveSetup, Settings};
 use crate::ask::checks::{check, check_contact, check_given};
+use crate::ask::inputs::OpenVehicle;
 use crate::caveats::restrictions::{backwards_caveat, doubtful_data_caveats};
 use crate::questions::simulate::motion_source::acting_force;
 use crate::{Library, SeriesFile, StudyError};
@@ -61,6 +62,14 @@ pub struct Drive {
 }
 
 impl Drive {
+    /// What a vehicle is that was left open: one that no force acts on has struck nothing.
+    pub(crate) fn open_vehicle(&self) -> OpenVehicle<'static> {
+        match self.force {
+            Some(_) => OpenVehicle::Unknown,
+            None => OpenVehicle::Driven,
+        }
+    }
+
     pub(crate) fn name(&self) -> String {
         let file = self.force.as_ref().or(self.steer.as_ref()).or(self.wheels.as_ref());
         let manoeuvre = if self.fishhook { "fishhook" } else { "manoeuvre" };

@@ -431,7 +431,7 @@ impl Question for SimulateRequest {
                 (settings, Box::new(analyse))
             }
             MotionSource::Drive(drive) => {
-                let settings = self.settings(&OpenVehicle::Unknown, None, &mut caveats)?;
+                let settings = self.settings(&drive.open_vehicle(), None, &mut caveats)?;
                 caveats.extend(by_simulation(self, false));
                 let setup = drive.setup(&settings, library, &mut caveats)?;
                 let name = drive.name();
