@@ -299,10 +299,14 @@ impl NumberFormat {
 
 /// A number in the unit of its quantity as [`NumberFormat::rough`] writes it.
 fn rough_number(quantity: Quantity, value: f64) -> String {
-    let is_place = matches!(quantity, Quantity::Length | Quantity::Angle);
-    match is_place && value.abs() >= 100.0 {
-        true => format!("{value:.0}"),
-        false => two_digits(value),
+    match quantity {
+        Quantity::Length | Quantity::Angle if value.abs() >= 100.0 => format!("{value:.0}"),
+        // No motion is known to the hundredth of a degree, however little it has turned.
+        Quantity::Angle if value.abs() < 1.0 => {
+            let tenths = (10.0 * value).round();
+            if tenths == 0.0 { "0".to_owned() } else { format!("{:.1}", tenths / 10.0) }
+        }
+        _ => two_digits(value),
     }
 }
 

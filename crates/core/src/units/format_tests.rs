@@ -57,6 +57,9 @@ fn what_is_drawn_and_has_no_interval_has_two_digits() {
     // A place 43 m off was told, and one that stood still was said to turn.
     assert_eq!([99.6, -1243.2].map(rough), ["100 m", "-1243 m"]);
     assert_eq!(EN.rough(Quantity::Angle, 187.4_f64.to_radians()), "187 deg");
+    // A car that had been steered left and right was said to head 0.077 deg to the left.
+    let heading = |deg: f64| EN.rough(Quantity::Angle, deg.to_radians());
+    assert_eq!([0.077, -0.04, -0.66].map(heading), ["0.1 deg", "0 deg", "-0.7 deg"]);
     assert_eq!(EN.rough(Quantity::Force, 123_400.0), "120 kN");
     assert_eq!(EN.rough(Quantity::AngularVelocity, -5.6e-7), "0 deg/s");
     assert_eq!(
