@@ -41,7 +41,10 @@ impl State {
 
     /// Leaves once what is being written is in its file.
     fn wait_for_writes(&mut self, to: Leaving) {
-        let stage = LeavingStage::Written { n_messages: self.session.log.len() };
+        // Who asks once more waits for the same.
+        let before = self.waits_for_writes().map(|(_, n_messages)| n_messages);
+        let n_messages = before.unwrap_or(self.session.log.len());
+        let stage = LeavingStage::Written { n_messages };
         self.session.dialogs.open(Dialog::Leave { to, stage });
     }
 
