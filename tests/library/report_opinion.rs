@@ -182,6 +182,19 @@ fn what_moves_a_calculation_by_hand_stands_where_the_opinion_says() {
     assert!(names.contains(&"mass of vehicle 1 + 30 kg"), "{names:?}");
 }
 
+/// “v1 = (m1 v1' + m2 v2' − m2 v2)/m1; Beide Fahrzeuge bewegen sich” was the condition.
+#[test]
+fn the_condition_of_a_calculation_by_hand_is_a_sentence() {
+    let settings = settings(Language::De, UnitSystem::Si, Paper::A4);
+    let (document, _) = report(&by_hand(), &settings);
+    let answers = document.section(SectionKind::Answers).expect("answers");
+    let is_sentence = |block: &Block| match block {
+        Block::Paragraph { text } => text.contains("/m1. Voraussetzung: Beide Fahrzeuge"),
+        _ => false,
+    };
+    assert!(answers.blocks.iter().any(is_sentence), "{:?}", answers.blocks);
+}
+
 /// Readers by ear get the file that they need: PDF/UA-1, with a title and headers of rows.
 #[test]
 fn the_pdf_says_that_it_can_be_read_by_ear() {

@@ -4,7 +4,7 @@ use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
 use crate::report::method::citation;
 use crate::report::numbers::fill;
-use crate::report::opinion::opinion_of_hand;
+use crate::report::opinion::{condition_of_hand, opinion_of_hand};
 use crate::report::parts::{InputRow, Part};
 use crate::report::{Block, InputClass};
 use impactlab_study::{Answer, HandInputReport, HandReport};
@@ -14,11 +14,10 @@ pub(super) fn part(answer: &Answer<HandReport>, context: Context<'_>) -> Part {
     let wording = context.wording;
     let words = wording.words;
     let name = wording.term(answer.name);
-    let holds = answer.method.holds().say(wording);
     let question = fill(words.ask_hand, &[("name", &name)]);
     let mut blocks = vec![
         Block::paragraph(question.clone()),
-        Block::paragraph(format!("{}; {holds}.", answer.equation)),
+        Block::paragraph(format!("{}. {}", answer.equation, condition_of_hand(answer, context))),
     ];
     blocks.extend(facts_with_meaning(&answer.result_table(), words.meaning_hand, context));
     blocks.extend(answer.bias_table().iter().map(|table| facts_table(table, context)));

@@ -254,6 +254,12 @@ pub(in crate::report) fn opinion_of_impact(
     }
 }
 
+/// The sentence that says under which condition a method by hand holds.
+pub(in crate::report) fn condition_of_hand(report: &HandReport, context: Context<'_>) -> String {
+    let holds = report.method.holds().say(context.wording);
+    fill(opinion_words(context.wording.language).hand_holds, &[("holds", &holds)])
+}
+
 /// A method by hand.
 pub(in crate::report) fn opinion_of_hand(
     report: &HandReport,
@@ -262,12 +268,11 @@ pub(in crate::report) fn opinion_of_hand(
 ) -> PartOpinion {
     let words = opinion_words(context.wording.language);
     let figures = rows_of(&report.result_table(), |_| true, context);
-    let holds = report.method.holds().say(context.wording);
     let answer = capitalized(&told(&figures, 1));
     PartOpinion {
         rank: Rank::Hand,
         question: question.to_owned(),
-        answer: format!("{answer} {}", fill(words.hand_holds, &[("holds", &holds)])),
+        answer: format!("{answer} {}", condition_of_hand(report, context)),
         courses: Vec::new(),
         figures,
         held: None,
