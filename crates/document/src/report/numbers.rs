@@ -6,6 +6,7 @@ use crate::report::language::{Words, given_name_of, phrase_of, words_of};
 use crate::report::{Language, ReportDate, ReportSettings};
 use impactlab_core::uncertainty::Caveat;
 use impactlab_core::units::{NumberFormat, Phrase, Quantity, UnitSystem, significant, trimmed};
+use impactlab_core::vehicle::BuiltInVehicle;
 
 /// Digits of a number that was given; more are those of a conversion of its unit.
 const MAX_GIVEN_DIGITS: usize = 6;
@@ -98,15 +99,26 @@ impl Wording {
         phrase_of(self.language, text).unwrap_or_else(|| self.quoted(text))
     }
 
-    /// A name in a picture in the language of the report; as it is where it has none, such as that of a
-    /// variant.
+    /// A name in a picture in the language and the units of the report; as it is where it has none, such as that
+    /// of a variant.
     pub fn name(&self, text: &str) -> String {
         let parts = || -> Option<Vec<String>> {
             text.split(", ").map(|part| phrase_of(self.language, part)).collect()
         };
         let known = given_name_of(self.language, text).or_else(|| phrase_of(self.language, text));
         let known = known.or_else(|| Some(parts()?.join(", ")));
-        known.map_or_else(|| text.to_owned(), |known| self.local(&known))
+        let name = known.map_or_else(|| text.to_owned(), |known| self.local(&known));
+        let is_shipped = || BuiltInVehicle::all().iter().any(|of| of.parameters.name == text);
+        let in_units = (self.units == UnitSystem::Us && is_shipped()).then(|| self.mass_of(&name));
+        in_units.flatten().unwrap_or(name)
+    }
+
+    /// A name with the mass at its end in the units of the report, as in `FEA target (2000 kg)`.
+    fn mass_of(&self, name: &str) -> Option<String> {
+        let rest = name.strip_suffix(" kg)")?;
+        let before = rest.trim_end_matches(|c: char| c.is_ascii_digit());
+        let mass_kg = rest.strip_prefix(before)?.parse().ok()?;
+        Some(format!("{before}{})", self.given(Quantity::Mass, mass_kg)))
     }
 
     /// A name of a case, a variant or a zone: in the language of the report if the program gave it, else as it is.
@@ -332,6 +344,19 @@ mod tests {
         let german = Wording { format, words: words_of(Language::De) };
         let told = german.note("said with the collision, instead of 2.0468 m");
         assert_eq!(told, "mit der Kollision angegeben, statt 2,0468 m");
+    }
+
+    /// A car of “2000 kg” stood beside masses in pounds. What somebody calls a car is theirs.
+    #[test]
+    fn the_mass_in_the_name_of_a_shipped_vehicle_is_in_the_units_of_the_report() {
+        let name = "Reference car (multibody, 2000 kg)";
+        let us = Wording::english(UnitSystem::Us);
+        assert_eq!(us.name(name), "Reference car (multibody, 4409 lb)");
+        assert_eq!(Wording::english(UnitSystem::Si).name(name), name);
+        let format = NumberFormat { units: UnitSystem::Us, language: Language::De };
+        let german = Wording { format, words: words_of(Language::De) };
+        assert_eq!(german.name(name), "Referenzfahrzeug (Mehrkörpermodell, 4409 lb)");
+        assert_eq!(us.name("our van (2000 kg)"), "our van (2000 kg)");
     }
 
     /// What the window writes of a cell of the atlas stood in English in a German opinion.
