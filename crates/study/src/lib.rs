@@ -88,10 +88,11 @@ pub use questions::predict::motion::{
     StrikingReport,
 };
 pub use questions::predict::recorded_impulse::RecordedImpulse;
+pub use questions::reconstruct::evidence_choice::EvidenceChoice;
 pub use questions::reconstruct::later_contacts::LaterContactsReport;
 pub use questions::reconstruct::paths::{NamedPath, ReconstructedPaths};
 pub use questions::reconstruct::request::{
-    EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest,
+    ReconstructAnswer, ReconstructReport, ReconstructRequest,
 };
 pub use questions::replay::report::{
     ContactPose, ContactState, ReplayAnswer, ReplayPoint, ReplayReport, ReplaySample, StartPose,

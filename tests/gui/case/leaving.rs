@@ -78,3 +78,43 @@ fn all_that_a_case_does_is_listed_before_it_is_allowed() {
         assert!(harness.query_by_label(phrase).is_some(), "{phrase} is not listed");
     }
 }
+
+#[test]
+fn cases_that_are_being_saved_are_written_before_the_window_ends() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pit.impactlab");
+    let mut harness = pit();
+    save_as(&mut harness, &path);
+    let context = harness.ctx.clone();
+    let app = harness.state_mut();
+    for _ in 0..2 {
+        app.apply(Command::Variant(VariantCommand::Duplicate), &context);
+        app.apply(Command::Case(CaseCommand::Save), &context);
+    }
+    assert!(!app.state().session.dialogs.is_any_open(), "its own save is nobody else's change");
+    eframe::App::on_exit(app, None);
+    assert_eq!(CaseFile::load(&path).expect("a case").variants.len(), 3);
+    assert!(!state(&harness).session.tasks.is_running(&TaskKey::SaveCase));
+    assert!(!state(&harness).is_case_changed());
+}
+
+/// The log of the case became that of its file once a save had ended, without what was noted meanwhile.
+#[test]
+fn what_is_noted_while_a_case_is_saved_stays_in_its_log() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pit.impactlab");
+    let mut harness = pit();
+    save_as(&mut harness, &path);
+    let context = harness.ctx.clone();
+    let app = harness.state_mut();
+    app.apply(Command::Case(CaseCommand::Save), &context);
+    app.apply(Command::Variant(VariantCommand::Duplicate), &context);
+    step_until(&mut harness, "the case on disk", |state| {
+        !state.session.tasks.is_running(&TaskKey::SaveCase)
+    });
+    let log = &state(&harness).case.file.log;
+    let events: Vec<&str> = log.iter().map(|entry| entry.event.as_str()).collect();
+    let copied = "variant \"base 2\" copied from \"base\"";
+    assert_eq!(events, ["saved", "saved", copied]);
+    assert!(log.is_sorted_by_key(|entry| &entry.time), "{log:?}");
+}

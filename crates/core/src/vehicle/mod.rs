@@ -25,6 +25,7 @@ mod as_printed;
 mod four_dof;
 mod friction_zone;
 mod ground;
+mod input;
 
 mod drivers;
 mod ending;
@@ -64,12 +65,13 @@ pub use ending::{
 pub use energy::MAX_ENERGY_GAIN;
 pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
 pub use fixed_object::{FIXED_MASS_KG, FIXED_YAW_INERTIA_KG_M2, FixedObject};
-pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
+pub use four_dof::VehicleEvaluation;
 pub use friction_zone::{
     FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, ZONE_FRICTION_LOG_SIGMA, friction_at,
     hidden_zones,
 };
 pub(crate) use held_force::HeldForceRun;
+pub use input::{CollisionForce, ContactPoint, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};

@@ -11,6 +11,7 @@ mod baseline;
 mod calculation;
 mod checks;
 mod crush;
+mod error;
 mod field;
 mod method;
 mod momentum;
@@ -22,9 +23,10 @@ mod yaw_mark;
 
 pub use baseline::HandCalculation;
 pub use calculation::{
-    HandAnswer, HandError, HandInputs, HandNumber, HandQuantity, HandQuestion, HandSensitivity,
+    HandAnswer, HandInputs, HandNumber, HandQuantity, HandQuestion, HandSensitivity,
 };
 pub use checks::{HandCheck, HandSpeed};
+pub use error::HandError;
 pub use field::{HandDefault, HandField};
 pub use method::{HandMethod, HandOutput};
 pub use yaw_bias::{YawMarkBias, YawMarkRun};

@@ -3,6 +3,7 @@
 pub(crate) mod assumed;
 mod badges;
 mod cut_off;
+pub(crate) mod evidence_choice;
 mod impact_place;
 pub(crate) mod later_contacts;
 mod particle_columns;

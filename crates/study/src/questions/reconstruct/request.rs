@@ -3,7 +3,7 @@
 
 use std::ffi::OsString;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,8 +21,8 @@ use crate::questions::reconstruct::paths::compared_marks;
 use crate::questions::reconstruct::progress::progress;
 use crate::questions::reconstruct::single_car;
 use crate::{
-    Answer, Event, FrictionZoneReport, InputKind, Library, Observer, Provenance, Question,
-    Sampling, StudyError, VehicleChoice,
+    Answer, Event, EvidenceChoice, FrictionZoneReport, InputKind, Library, Observer, Provenance,
+    Question, Sampling, StudyError, VehicleChoice,
 };
 use impactlab_core::data::Outcome;
 use impactlab_core::jobs::Progress;
@@ -83,16 +83,6 @@ pub struct ReconstructRequest {
 
 fn default_particles() -> usize {
     ReconstructRequest::DEFAULT_PARTICLES
-}
-
-/// The evidence: a file, or in memory.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum EvidenceChoice {
-    /// An evidence file.
-    File(PathBuf),
-    /// The evidence itself.
-    Inline(Box<Evidence>),
 }
 
 /// What the evidence says of the speeds, SI units.
@@ -348,38 +338,6 @@ fn likelihood_of(evidence: &Evidence, model: &ForwardModel) -> String {
     let (cars, zones) = (model.cars(), model.zones());
     let contacts = if model.follows_later_contacts() { " all contacts" } else { "" };
     format!("{evidence:?} {cars:?} {zones:?} {:?}{contacts}", Discrepancy::default())
-}
-
-impl EvidenceChoice {
-    /// The evidence.
-    ///
-    /// # Errors
-    /// [`StudyError::TomlFile`], with line and column; [`StudyError::IncompleteEvidence`] for a form that
-    /// has not been filled in.
-    pub fn load(&self) -> Result<Evidence, StudyError> {
-        match self {
-            Self::File(path) => InputKind::Evidence.explain(path, Evidence::load(path)),
-            Self::Inline(evidence) => match evidence.missing() {
-                None => Ok(evidence.as_ref().clone()),
-                Some(missing) => Err(StudyError::IncompleteEvidence { name: self.name(), missing }),
-            },
-        }
-    }
-
-    /// The file, if it is one.
-    pub fn file(&self) -> Option<&Path> {
-        match self {
-            Self::File(path) => Some(path),
-            Self::Inline(_) => None,
-        }
-    }
-
-    fn name(&self) -> String {
-        match self {
-            Self::File(path) => path.display().to_string(),
-            Self::Inline(evidence) => evidence.case.clone(),
-        }
-    }
 }
 
 impl Question for ReconstructRequest {
