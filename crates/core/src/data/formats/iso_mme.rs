@@ -17,7 +17,8 @@
 //! Keys are the same in capitals, and so are the names of files. A code has the object, the position, ten
 //! characters of the place, the dimension (`AC`, `FO`, `VE` …), the axis and the filter class; places and axes
 //! differ from laboratory to laboratory, so that columns are named by their codes and mapped. Values are read as
-//! recorded; a channel of another time than the first one is a part of its own.
+//! recorded; a channel whose status says that it failed is left out, and one of another time than the first one is
+//! a part of its own.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -27,7 +28,7 @@ use crate::data::formats::nhtsa_curves::OTHER_AXES;
 use crate::data::formats::{Converted, Said, number_text};
 use crate::data::spelling::unit;
 use crate::data::text::read_text;
-use crate::data::{DataError, ReadSettings, Sheet, SheetRef, list_folder};
+use crate::data::{DataError, Place, ReadSettings, Sheet, SheetRef, list_folder};
 use crate::units::Quantity;
 
 /// Bytes of one file, and of all channels of a test together.
@@ -100,6 +101,14 @@ pub(super) fn as_table(
         Some(SheetRef::Number(number)) => number.checked_sub(1),
         Some(SheetRef::Name(name)) => all.iter().position(|part| part == name),
     };
+    if groups.is_empty() && channels.iter().any(|channel| channel.failure().is_some()) {
+        let why = format!(
+            "is a test in ISO-MME of which no channel can be read: {}; open another channel, or correct the data status \
+             in the file if the laboratory says that the samples are good",
+            doubts.join("; ")
+        );
+        return Err(DataError::DamagedAt { path: path.to_owned(), place: Place::Whole, why });
+    }
     if groups.is_empty() {
         let format = "a test in ISO-MME without channels over time";
         let remedy = "put its channels (.001 and so on) into the folder Channel beside it, and look at their times";
@@ -205,7 +214,18 @@ fn channel_files(entries: &[PathBuf], stem: &str) -> BTreeMap<u32, PathBuf> {
 fn grouped(channels: &[MmeChannel]) -> (Vec<Group>, Vec<String>) {
     let (mut groups, mut doubts): (Vec<Group>, Vec<String>) = (Vec::new(), Vec::new());
     let is_time = |channel: &MmeChannel| channel.code().to_uppercase().contains("TIRS");
-    for (idx, channel) in channels.iter().enumerate().filter(|(_, channel)| !is_time(channel)) {
+    let failed = channels.iter().filter_map(|channel| {
+        channel.failure().map(|status| format!("{} ({status})", channel.code()))
+    });
+    let failed: Vec<String> = failed.collect();
+    if !failed.is_empty() {
+        doubts.push(format!(
+            "channels that failed, as their data status says, are left out: {}",
+            some(&failed)
+        ));
+    }
+    let is_read = |channel: &MmeChannel| !is_time(channel) && channel.failure().is_none();
+    for (idx, channel) in channels.iter().enumerate().filter(|(_, channel)| is_read(channel)) {
         doubts.extend(channel.status());
         let time_s = match channel.is_explicit() {
             true => explicit_s(channels, channel),
@@ -248,7 +268,7 @@ fn explicit_s(channels: &[MmeChannel], of: &MmeChannel) -> Option<Vec<f64>> {
     };
     let mut times = channels.iter().filter(is_it);
     let time = times.next()?;
-    if times.next().is_some() {
+    if times.next().is_some() || time.failure().is_some() {
         return None;
     }
     // Seconds are what a time has that does not say its unit.

@@ -13,6 +13,9 @@ const MAX_KEYS: usize = 400;
 /// By how much a stated extreme may be off for its rounding, as a share of the range of the values.
 const ROUNDING: f64 = 0.01;
 
+/// Words of a data status by which the samples of a channel are no measurement, in small letters.
+const FAILED: [&str; 5] = ["failed", "meaningless", "no data", "invalid", "not valid"];
+
 /// A channel.
 pub(super) struct MmeChannel {
     path: PathBuf,
@@ -124,7 +127,14 @@ impl MmeChannel {
         Some((0..self.values.len()).map(|i| first_s + i as f64 * interval_s).collect())
     }
 
-    /// What keeps it from being read.
+    /// Its status, if that says that its samples are no measurement.
+    pub(super) fn failure(&self) -> Option<String> {
+        let status = self.value("data status")?;
+        let lower = status.to_lowercase();
+        FAILED.iter().any(|word| lower.contains(word)).then(|| plain(status))
+    }
+
+    /// What its status says of samples that are read and not simply good.
     pub(super) fn status(&self) -> Option<String> {
         let status = self.value("data status")?;
         let is_good = matches!(status.to_lowercase().as_str(), "ok" | "good" | "valid");

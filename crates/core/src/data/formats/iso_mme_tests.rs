@@ -80,6 +80,38 @@ fn a_cut_channel_and_another_axis_are_said() {
     assert!(whole.len() == 1 && whole[0].contains("to the right and down"), "{whole:?}");
 }
 
+/// The samples of a channel that failed are no measurement; those of a questionable one are read and told.
+#[test]
+fn a_channel_whose_status_says_that_it_failed_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), "\n");
+    let force = folder.path().join("CHANNEL/t.002");
+    let good = std::fs::read_to_string(&force).unwrap();
+    let failed = good.replace("11BARR000000FOXP", "11BARR000000FOYP");
+    let failed = failed.replace(":ok", ":Channel failed");
+    std::fs::write(folder.path().join("CHANNEL/t.004"), &failed).unwrap();
+    std::fs::write(&force, good.replace(":ok", ":questionable data")).unwrap();
+    let table = Table::read(&path).unwrap();
+    assert_eq!(table.header(), ["time [s]", "11BARR000000FOXP Kraft [kN]"]);
+    let text = channel(&[("Laboratory name", "a"), ("Data format", "ISO-MME")], &[]);
+    let said = as_table(&path, &text, &ReadSettings::default()).unwrap().unwrap().said;
+    let doubts = said.doubts.join("; ");
+    for expected in
+        ["left out: 11BARR000000FOYP (Channel failed)", "FOXP: data status questionable data"]
+    {
+        assert!(doubts.contains(expected), "{expected}: {doubts}");
+    }
+    // One that is opened alone says so, too.
+    let keys = [
+        ("Channel code", "11SEAT000000ACXP"),
+        ("Sampling interval", "0.1"),
+        ("Data status", "channel failed"),
+    ];
+    let alone = channel(&keys, &["1", "2"]);
+    let error = as_table(Path::new("a.001"), &alone, &ReadSettings::default()).err().unwrap();
+    assert!(error.to_string().contains("11SEAT000000ACXP (channel failed)"), "{error}");
+}
+
 /// The extremes that laboratories write beside the samples tell of a channel that was changed later.
 #[test]
 fn an_extreme_that_is_not_among_the_samples_is_said() {
