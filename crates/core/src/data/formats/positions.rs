@@ -9,7 +9,8 @@
 //! Latitude and longitude become degrees, to the north and to the east positive, and metres in the plane at the
 //! first point by the formulas `east` and `north` of a map. A place of NMEA is degrees and minutes of arc, a
 //! speed knots, a course clockwise from north. A sentence whose checksum is wrong or that says that there was no
-//! fix is left out and counted. Positions are those of the antenna.
+//! fix is left out and counted; what a logger writes in front of one, such as its own stamp, is not read. Positions
+//! are those of the antenna.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,6 +21,11 @@ use crate::units::KNOT_M_S;
 
 /// Lines at the beginning by which a log is known.
 const EXAMINED_LINES: usize = 40;
+
+/// Bytes in front of a sentence, such as the stamp of a logger. With more than one separator among them the line is a
+/// row of a table, whose other cells would be lost.
+const MAX_PREFIX_BYTES: usize = 64;
+const SEPARATORS: [char; 4] = [',', ';', '\t', '|'];
 
 /// Tracks of a file.
 const MAX_TRACKS: usize = 1000;
@@ -162,9 +168,17 @@ fn is_nmea(text: &str) -> bool {
     n_sentences >= 2
 }
 
+/// A sentence, from its sign on, without what a logger wrote in front of it.
+fn sentence(line: &str) -> Option<&str> {
+    let line = line.trim();
+    let (prefix, sentence) = line.split_at_checked(line.find('$')?)?;
+    let is_prefix = prefix.len() <= MAX_PREFIX_BYTES && prefix.matches(SEPARATORS).count() <= 1;
+    is_prefix.then_some(sentence)
+}
+
 /// The kind of a sentence.
 fn kind(line: &str) -> Option<&str> {
-    let name = line.trim().strip_prefix('$')?.split(',').next()?;
+    let name = sentence(line)?.strip_prefix('$')?.split(',').next()?;
     name.get(2..5).filter(|_| name.len() == 5)
 }
 
@@ -177,7 +191,7 @@ struct Fix {
 
 /// The track of a log of sentences, and what is in doubt.
 fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
-    let lines = || text.lines().map(str::trim);
+    let lines = || text.lines().filter_map(sentence);
     let wanted = match lines().any(|line| kind(line) == Some("RMC")) {
         true => "RMC",
         false => "GGA",
@@ -202,7 +216,15 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
             None => n_without += 1,
         }
     }
+    let is_behind = |line: &&str| kind(line) == Some(wanted) && !line.trim().starts_with('$');
+    let n_behind = text.lines().filter(is_behind).count();
     let mut doubts = Vec::new();
+    if n_behind > 0 {
+        doubts.push(format!(
+            "what stands in front of {n_behind} sentences, such as the stamp of a logger, is not read: times are those of \
+             the receiver"
+        ));
+    }
     if n_wrong > 0 {
         doubts.push(format!("{n_wrong} sentences with a wrong checksum are left out"));
     }

@@ -153,3 +153,22 @@ fn sentences_of_several_talkers_are_read_once_and_said() {
     let (n, notes) = track(&[("GP", 1), ("GP", 2)]);
     assert!(n == 2 && !notes.contains("GPRMC"), "{n}: {notes}");
 }
+
+/// Loggers write a stamp of their own, or the name of a source, in front of each sentence.
+#[test]
+fn sentences_behind_a_stamp_are_read_and_said() {
+    let rmc = |second: u32| {
+        let lon = 60.0 - 0.005 * f64::from(second);
+        sentence(&format!("GPRMC,10000{second}.00,A,5200.0000,N,000{lon:.4},W,10.0,090.0,251126,,"))
+    };
+    for prefix in ["2026-01-01T10:00:00 ", "[12:00:00,125] GPS: ", "NMEA,", "\\s:a,c:17*00\\"] {
+        let text: String = (1..4).map(|second| format!("{prefix}{}", rmc(second))).collect();
+        let loaded = read("a.nmea", &text).unwrap();
+        assert_eq!(loaded.series.time_s(), [36_001.0, 36_002.0, 36_003.0], "{prefix}");
+        let is_said = |note: &crate::data::Note| note.to_string().contains("front of 3 sentences");
+        assert!(loaded.notes.iter().any(is_said), "{prefix}: {:?}", loaded.notes);
+    }
+    // A row of a table has other cells, which would be lost.
+    assert_eq!(kind("0.01,9.81,$GPRMC,100000.00,A"), None);
+    assert_eq!(kind("$GPRMC,100000.00,A"), Some("RMC"));
+}
