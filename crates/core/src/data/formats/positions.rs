@@ -182,9 +182,12 @@ fn kind(line: &str) -> Option<&str> {
     name.get(2..5).filter(|_| name.len() == 5)
 }
 
-/// A row of a log with who sent it and when, s of the day.
+/// A row of a log with who sent it and when.
 struct Fix {
     talker: String,
+    /// Year, month and day as one number, `20261125`. Sentences `GGA` have none.
+    date: Option<u32>,
+    /// Of the day.
     time_s: f64,
     row: String,
 }
@@ -211,7 +214,9 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
         match row.zip(time_s) {
             Some((row, time_s)) => {
                 n_estimated += usize::from(is_estimated(wanted, &fields));
-                fixes.push(Fix { talker: line.chars().skip(1).take(2).collect(), time_s, row });
+                let talker = line.chars().skip(1).take(2).collect();
+                let date = fields.get(9).filter(|_| wanted == "RMC").and_then(|text| date(text));
+                fixes.push(Fix { talker, date, time_s, row });
             }
             None => n_without += 1,
         }
@@ -237,6 +242,8 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
              reckoning, was told or simulated: they are read, and may be far off"
         ));
     }
+    let is_dated = fixes.iter().all(|fix| fix.date.is_some());
+    fixes.iter_mut().filter(|_| !is_dated).for_each(|fix| fix.date = None);
     let (mut fixes, of_talkers) = of_one_clock(fixes, wanted);
     doubts.extend(of_talkers);
     let n_held = if wanted == "RMC" { hold_course(&mut fixes) } else { 0 };
@@ -251,7 +258,7 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
     };
     // A single place is no track.
     let is_track = fixes.len() > 1;
-    let rows: String = fixes.into_iter().map(|fix| fix.row).collect();
+    let rows: String = fixes.into_iter().map(|fix| day_text(fix.date) + &fix.row).collect();
     let track = Track { name: wanted.to_owned(), header, rows };
     (if is_track { vec![track] } else { Vec::new() }, doubts)
 }
@@ -290,15 +297,16 @@ fn of_one_clock(fixes: Vec<Fix>, kind: &str) -> (Vec<Fix>, Option<String>) {
     }
     let others: Vec<String> = others.into_iter().collect();
     let others = others.join(", ");
-    // Instants of the day, to a millisecond.
-    let instant = |fix: &Fix| (fix.time_s * 1e3).round() as u64;
-    let mut taken: BTreeSet<u64> =
+    // Instants of a day, to a millisecond.
+    let instant = |fix: &Fix| (fix.date, (fix.time_s * 1e3).round() as u64);
+    let mut taken: BTreeSet<(Option<u32>, u64)> =
         fixes.iter().filter(|fix| fix.talker == first).map(instant).collect();
     let n_own = taken.len();
     let is_kept: Vec<bool> =
         fixes.iter().map(|fix| fix.talker == first || taken.insert(instant(fix))).collect();
     let kept = || fixes.iter().zip(&is_kept).filter(|(_, is_kept)| **is_kept).map(|(fix, _)| fix);
-    let n_back = |times: Vec<u64>| times.windows(2).filter(|pair| pair[1] < pair[0]).count();
+    let n_back =
+        |times: Vec<(Option<u32>, u64)>| times.windows(2).filter(|pair| pair[1] < pair[0]).count();
     let own = || fixes.iter().filter(|fix| fix.talker == first);
     let goes_back = n_back(kept().map(instant).collect()) > n_back(own().map(instant).collect());
     let n_added = taken.len() - n_own;
@@ -353,6 +361,23 @@ fn gga(fields: &[&str]) -> Option<String> {
 fn is_estimated(kind: &str, fields: &[&str]) -> bool {
     let (idx, marks) = if kind == "RMC" { (12, ["E", "M", "S"]) } else { (6, ["6", "7", "8"]) };
     fields.get(idx).is_some_and(|mark| marks.contains(mark))
+}
+
+/// The year, month and day of `ddmmyy` as one number; the years are those from 1980 on, when the system began.
+fn date(text: &str) -> Option<u32> {
+    let is_date = text.len() == 6 && text.bytes().all(|byte| byte.is_ascii_digit());
+    let number: u32 = text.parse().ok().filter(|_| is_date)?;
+    let [day, month, year] = [number / 10_000, number / 100 % 100, number % 100];
+    let year = if year < 80 { 2000 + year } else { 1900 + year };
+    let is_date = (1..=31).contains(&day) && (1..=12).contains(&month);
+    is_date.then_some(10_000 * year + 100 * month + day)
+}
+
+/// `2026-11-25T` of such a number; nothing without one.
+fn day_text(date: Option<u32>) -> String {
+    date.map_or_else(String::new, |date| {
+        format!("{}-{:02}-{:02}T", date / 10_000, date / 100 % 100, date % 100)
+    })
 }
 
 /// Seconds of the day of `hhmmss.ss`.

@@ -172,3 +172,38 @@ fn sentences_behind_a_stamp_are_read_and_said() {
     assert_eq!(kind("0.01,9.81,$GPRMC,100000.00,A"), None);
     assert_eq!(kind("$GPRMC,100000.00,A"), Some("RMC"));
 }
+
+/// Two drives in one log lie a day apart, not seconds; a log without dates goes on over midnight as before.
+#[test]
+fn the_date_of_a_sentence_counts() {
+    let rows = |stamps: [(&str, &str); 3]| {
+        let text: String = stamps
+            .iter()
+            .map(|(date, time)| {
+                sentence(&format!("GPRMC,{time},A,5200.0000,N,00100.0000,W,10.0,090.0,{date},,"))
+            })
+            .collect();
+        let (tracks, _) = nmea_track(&text);
+        let stamps = tracks[0].rows.lines().map(|row| row.split('\t').next().unwrap().to_owned());
+        stamps.collect::<Vec<String>>()
+    };
+    let dated = rows([("311226", "235959.5"), ("010127", "000000.5"), ("020127", "000001")]);
+    assert_eq!(dated, ["2026-12-31T23:59:59.5", "2027-01-01T00:00:00.5", "2027-01-02T00:00:01"]);
+    for unknown in ["", "321326", "+11126", "0101270"] {
+        let plain = rows([("311226", "235959.5"), (unknown, "000000.5"), ("010127", "000001")]);
+        assert_eq!(plain, ["23:59:59.5", "00:00:00.5", "00:00:01"], "{unknown:?}");
+    }
+}
+
+/// Of two talkers, the second one gives instants of another day that the first one leaves out.
+#[test]
+fn an_instant_of_another_day_is_another_one() {
+    let rmc = |talker: &str, date: &str, second: u32| {
+        sentence(&format!(
+            "{talker}RMC,10000{second}.00,A,5200.0000,N,00100.0000,W,10.0,090.0,{date},,"
+        ))
+    };
+    let text = rmc("GN", "251126", 1) + &rmc("GN", "251126", 2) + &rmc("GP", "261126", 1);
+    let (tracks, doubts) = nmea_track(&text);
+    assert_eq!(tracks[0].rows.lines().count(), 3, "{doubts:?}");
+}
