@@ -1,4 +1,5 @@
-//! Logs of satellite receivers: GPX (tracks) and NMEA 0183 (sentences `RMC`, else `GGA`).
+//! Logs of satellite receivers: GPX (tracks) and NMEA 0183 (sentences `RMC`, else `GGA`; both are parts where
+//! `GGA` comes more often).
 //!
 //! ```text
 //! <trkpt lat="51.985" lon="-0.975"><ele>100</ele><time>2026-11-25T10:00:00.5Z</time></trkpt>
@@ -41,12 +42,17 @@ pub(in crate::data) const OF_COURSE: &str = "the yaw angle is the course over gr
 /// Columns of sentences `RMC`.
 const RMC_HEADER: &str = "time [s]\tlatitude [deg]\tlongitude [deg]\tspeed [m/s]\tyaw [deg]";
 
+/// How many times more positions than sentences `RMC` those of `GGA` give if they are a part of their own.
+const DENSER: usize = 2;
+
 /// A part of a log.
 struct Track {
     name: String,
     /// Names of the columns.
     header: &'static str,
     rows: String,
+    /// What is said of it, in words.
+    doubts: Vec<String>,
 }
 
 /// A log as the text of a table.
@@ -58,19 +64,22 @@ pub(super) fn as_table(
     text: &str,
     settings: &ReadSettings,
 ) -> Result<Option<Converted>, DataError> {
-    let (format, (tracks, mut doubts)) = match () {
-        () if is_gpx(text) => ("a GPX file", (gpx_tracks(text), Vec::new())),
-        () if is_nmea(text) => ("a log of NMEA sentences", nmea_track(text)),
+    let (format, tracks) = match () {
+        () if is_gpx(text) => ("a GPX file", Ok(gpx_tracks(text))),
+        () if is_nmea(text) => ("a log of NMEA sentences", nmea_tracks(text)),
         () => return Ok(None),
     };
-    if tracks.is_empty() && !doubts.is_empty() {
-        let why = format!(
-            "is {format} of which fewer than two are read: {}; take the log from the receiver once more, or give a \
-             CSV file with time, latitude and longitude",
-            doubts.join("; ")
-        );
-        return Err(DataError::DamagedAt { path: path.to_owned(), place: Place::Whole, why });
-    }
+    let tracks = match tracks {
+        Err(doubts) if !doubts.is_empty() => {
+            let why = format!(
+                "is {format} of which fewer than two are read: {}; take the log from the receiver once more, or give a \
+                 CSV file with time, latitude and longitude",
+                doubts.join("; ")
+            );
+            return Err(DataError::DamagedAt { path: path.to_owned(), place: Place::Whole, why });
+        }
+        tracks => tracks.unwrap_or_default(),
+    };
     if tracks.is_empty() {
         let remedy = "it has no track with positions; record one, or give a CSV file with time, latitude and \
                       longitude";
@@ -85,6 +94,7 @@ pub(super) fn as_table(
             "its points have no times, so that they are no motion; record a track with times";
         return Err(DataError::OtherFormat { path: path.to_owned(), format, remedy });
     }
+    let mut doubts = track.doubts.clone();
     if settings.antenna_m.is_none() {
         doubts.push(OF_ANTENNA.to_owned());
     }
@@ -130,7 +140,7 @@ fn gpx_tracks(text: &str) -> Vec<Track> {
         if !rows.is_empty() {
             let name = format!("track {}", tracks.len() + 1);
             let header = "time [s]\tlatitude [deg]\tlongitude [deg]\televation [m]";
-            tracks.push(Track { name, header, rows });
+            tracks.push(Track { name, header, rows, doubts: Vec::new() });
         }
     }
     tracks
@@ -192,13 +202,33 @@ struct Fix {
     row: String,
 }
 
-/// The track of a log of sentences, and what is in doubt.
-fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
+/// The track of sentences `RMC`, which have speeds, else that of `GGA`; both if those of `GGA` are denser.
+///
+/// # Errors
+/// What is left out, if fewer than two sentences are read.
+fn nmea_tracks(text: &str) -> Result<Vec<Track>, Vec<String>> {
+    if !text.lines().any(|line| kind(line) == Some("RMC")) {
+        return nmea_track(text, "GGA").map(|gga| vec![gga]);
+    }
+    let mut rmc = nmea_track(text, "RMC")?;
+    let n_fixes = |track: &Track| track.rows.lines().count();
+    let n_rmc = n_fixes(&rmc);
+    let is_denser = |gga: &Track| n_fixes(gga) >= DENSER * n_rmc;
+    let Some(gga) = nmea_track(text, "GGA").ok().filter(is_denser) else { return Ok(vec![rmc]) };
+    rmc.doubts.push(format!(
+        "RMC, which is read, gives {n_rmc} positions, GGA {}: for a motion that is short against the steps of RMC, read \
+         GGA (sheet=2), which has no speeds and no courses",
+        n_fixes(&gga)
+    ));
+    Ok(vec![rmc, gga])
+}
+
+/// The track of one kind of sentences.
+///
+/// # Errors
+/// What is left out, if fewer than two are read.
+fn nmea_track(text: &str, wanted: &str) -> Result<Track, Vec<String>> {
     let lines = || text.lines().filter_map(sentence);
-    let wanted = match lines().any(|line| kind(line) == Some("RMC")) {
-        true => "RMC",
-        false => "GGA",
-    };
     let (mut fixes, mut n_wrong, mut n_without, mut n_estimated) = (Vec::new(), 0, 0, 0);
     for line in lines().filter(|line| kind(line) == Some(wanted)) {
         let Some(sentence) = checked(line) else {
@@ -257,10 +287,11 @@ fn nmea_track(text: &str) -> (Vec<Track>, Vec<String>) {
         _ => "time [s]\tlatitude [deg]\tlongitude [deg]",
     };
     // A single place is no track.
-    let is_track = fixes.len() > 1;
+    if fixes.len() < 2 {
+        return Err(doubts);
+    }
     let rows: String = fixes.into_iter().map(|fix| day_text(fix.date) + &fix.row).collect();
-    let track = Track { name: wanted.to_owned(), header, rows };
-    (if is_track { vec![track] } else { Vec::new() }, doubts)
+    Ok(Track { name: wanted.to_owned(), header, rows, doubts })
 }
 
 /// Gives fixes without a course that of the one before, the first ones that of the first one that has it; their number.

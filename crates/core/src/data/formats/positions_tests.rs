@@ -1,7 +1,7 @@
 //! Logs of satellite receivers as tables: places, what is left out, and what is said of it.
 
 use super::*;
-use crate::data::{Channel, read_any_series};
+use crate::data::{Channel, SheetRef, read_any_series};
 
 fn read(name: &str, text: &str) -> Result<crate::data::Loaded, DataError> {
     let folder = tempfile::tempdir().unwrap();
@@ -183,8 +183,8 @@ fn the_date_of_a_sentence_counts() {
                 sentence(&format!("GPRMC,{time},A,5200.0000,N,00100.0000,W,10.0,090.0,{date},,"))
             })
             .collect();
-        let (tracks, _) = nmea_track(&text);
-        let stamps = tracks[0].rows.lines().map(|row| row.split('\t').next().unwrap().to_owned());
+        let track = nmea_track(&text, "RMC").ok().unwrap();
+        let stamps = track.rows.lines().map(|row| row.split('\t').next().unwrap().to_owned());
         stamps.collect::<Vec<String>>()
     };
     let dated = rows([("311226", "235959.5"), ("010127", "000000.5"), ("020127", "000001")]);
@@ -204,6 +204,35 @@ fn an_instant_of_another_day_is_another_one() {
         ))
     };
     let text = rmc("GN", "251126", 1) + &rmc("GN", "251126", 2) + &rmc("GP", "261126", 1);
-    let (tracks, doubts) = nmea_track(&text);
-    assert_eq!(tracks[0].rows.lines().count(), 3, "{doubts:?}");
+    let track = nmea_track(&text, "RMC").ok().unwrap();
+    assert_eq!(track.rows.lines().count(), 3, "{:?}", track.doubts);
+}
+
+/// Receivers send positions at 10 Hz and the rest at 1 Hz; those between are a part that can be read.
+#[test]
+fn positions_that_are_denser_than_speeds_are_a_part_and_said() {
+    let track = |step: usize, sheet: Option<SheetRef>| {
+        let mut text = String::new();
+        for tenth in (0..30_u32).step_by(step) {
+            let (time, lon) = (f64::from(tenth) / 10.0, 0.001 * f64::from(tenth));
+            let place = format!("5200.0000,N,000{lon:07.4},E");
+            text += &sentence(&format!("GPGGA,10000{time:.1},{place},1,12,0.7,9.0,M,,M,,"));
+            if tenth % 10 == 0 {
+                text += &sentence(&format!("GPRMC,10000{time:.1},A,{place},22.0,090.0,251126,,"));
+            }
+        }
+        let settings = ReadSettings { sheet, ..ReadSettings::default() };
+        as_table(Path::new("a.nmea"), &text, &settings).unwrap().unwrap()
+    };
+    let n_rows = |converted: &Converted| converted.text.lines().count() - 1;
+    let of_both = track(1, None);
+    let said = of_both.said.doubts.join("; ");
+    assert!(said.contains("gives 3 positions, GGA 30"), "{said}");
+    assert_eq!((n_rows(&of_both), of_both.said.part.unwrap().all.len()), (3, 2));
+    let denser = track(1, Some(SheetRef::Number(2)));
+    assert_eq!(n_rows(&denser), 30);
+    assert!(!denser.said.doubts.join("; ").contains("RMC"), "{:?}", denser.said.doubts);
+    // Of one rate for both, RMC says all.
+    let of_one = track(10, None);
+    assert_eq!(of_one.said.part.unwrap().all, ["RMC"]);
 }
