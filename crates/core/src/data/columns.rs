@@ -297,7 +297,7 @@ impl Columns {
                 line,
                 channel,
                 needed,
-                found: table.header().to_vec(),
+                found: table.found_columns(),
             },
         }
     }

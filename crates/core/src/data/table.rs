@@ -34,6 +34,9 @@ const SHOWN_CHARS: usize = 120;
 /// Number of other sheets or parts of a file that are named.
 const SHOWN_PARTS: usize = 4;
 
+/// Number of columns that are not read which an error names.
+const SHOWN_LEFT_OUT: usize = 6;
+
 /// A delimited text file that was read as a table.
 #[derive(Debug, Clone)]
 pub struct Table {
@@ -187,6 +190,13 @@ impl Table {
     /// Names of the columns; `column 1` and so on where the file gives none.
     pub fn header(&self) -> &[String] {
         &self.header.names
+    }
+
+    /// The names of all columns, with those that hold no numbers first, and that they are not read.
+    pub(super) fn found_columns(&self) -> Vec<String> {
+        let left_out = self.said.iter().flat_map(|said| &said.left_out).take(SHOWN_LEFT_OUT);
+        let left_out = left_out.map(|name| format!("{name}, not read"));
+        left_out.chain(self.header.names.iter().cloned()).collect()
     }
 
     /// Whether the file names its columns.

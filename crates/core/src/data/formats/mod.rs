@@ -61,6 +61,8 @@ pub(super) struct Said {
     pub description: String,
     /// What a person should look at before the numbers are used, in words.
     pub doubts: Vec<String>,
+    /// Columns that are not read, each with what it holds.
+    pub left_out: Vec<String>,
     /// The part that is read, and the names of all parts; `None` if there is one only.
     pub part: Option<Sheet>,
     /// By what a chosen map is kept beside the names of the columns, such as the type of a device.

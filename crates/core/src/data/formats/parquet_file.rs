@@ -18,7 +18,7 @@ use parquet::schema::types::ColumnDescriptor;
 
 use crate::data::budget::{MAX_COLUMNS, MAX_TABLE_BYTES};
 use crate::data::formats::{Converted, Said, number_text, parquet_check};
-use crate::data::{DataError, RESTRICTIONS_COLUMN, Sheet, open_file, read_bytes};
+use crate::data::{DataError, Place, RESTRICTIONS_COLUMN, Sheet, open_file, read_bytes};
 
 /// Cells that any file may have, and how many more for each of its bytes: long runs of one number are packed
 /// into a few bytes.
@@ -32,6 +32,9 @@ const BATCH: usize = 8192;
 
 /// Decimal places that numbers of 64 bits may have.
 const PLACES: std::ops::RangeInclusive<i32> = 0..=18;
+
+/// Names of columns that are not read which are shown.
+const MAX_SHOWN: usize = 12;
 
 /// Names of columns of stamps, which are the time if they have its unit.
 const STAMPS: [&str; 5] = ["timestamp", "time", "stamp", "header.stamp", "t"];
@@ -53,7 +56,8 @@ struct NumberColumn {
 /// Reads a Parquet file as the text of a table.
 ///
 /// # Errors
-/// [`DataError::Damaged`] if it cannot be read, [`DataError::TooLarge`] beyond the limits.
+/// [`DataError::Damaged`] if it cannot be read, [`DataError::DamagedAt`] without numbers, [`DataError::TooLarge`]
+/// beyond the limits.
 pub(super) fn as_table(path: &Path) -> Result<Converted, DataError> {
     let bytes = read_bytes(path, MAX_TABLE_BYTES)?;
     let damaged =
@@ -69,23 +73,23 @@ pub(super) fn as_table(path: &Path) -> Result<Converted, DataError> {
         Err(_) => return Err(damaged("its pages are damaged".to_owned())),
     };
     if columns.is_empty() {
-        let remedy = "it has no column of numbers that are not repeated; export the channels over time as CSV";
-        return Err(DataError::OtherFormat {
-            path: path.to_owned(),
-            format: "a Parquet file",
-            remedy,
-        });
+        let columns = if left_out.is_empty() { "none".to_owned() } else { some(&left_out) };
+        let why = format!(
+            "is a Parquet file without a column of single numbers (its columns: {columns}); write the channels over \
+             time as double, or export them as CSV"
+        );
+        return Err(DataError::DamagedAt { path: path.to_owned(), place: Place::Whole, why });
     }
     let mut description = format!("a Parquet file with {} columns of numbers", columns.len());
     if !left_out.is_empty() {
-        let shown: Vec<&str> = left_out.iter().take(12).map(String::as_str).collect();
-        description += &format!("; left out are columns of other kinds: {}", shown.join(", "));
+        description += &format!("; left out are columns of other kinds: {}", some(&left_out));
     }
     let doubts = restrictions.map(|text| format!("the file says of itself: {text}"));
     let name = "columns".to_owned();
     let said = Said {
         description,
         doubts: doubts.into_iter().collect(),
+        left_out,
         part: Some(Sheet { name: name.clone(), all: vec![name] }),
         device: String::new(),
         keeps_lines: false,
@@ -112,7 +116,7 @@ fn text(columns: &[NumberColumn]) -> String {
     text
 }
 
-/// The columns of numbers, the names of the others, and what the file says restricts its numbers.
+/// The columns of numbers, the others with what they hold, and what the file says restricts its numbers.
 type Read = (Vec<NumberColumn>, Vec<String>, Option<String>);
 
 /// # Errors
@@ -132,7 +136,9 @@ fn columns(file: std::fs::File, bytes: &[u8]) -> Result<Read, String> {
     for (idx, column) in schema.columns().iter().enumerate() {
         match is_number(column) {
             true => columns.push(NumberColumn::new(idx, column)),
-            false => left_out.push(plain(&column.path().string())),
+            false => {
+                left_out.push(format!("{} ({})", plain(&column.path().string()), kind(column)))
+            }
         }
     }
     let pairs = metadata.key_value_metadata().into_iter().flatten();
@@ -203,6 +209,24 @@ fn is_number(column: &ColumnDescriptor) -> bool {
     );
     let is_scaled = !is_decimal(column) || PLACES.contains(&column.type_scale());
     is_plain && is_scaled && column.max_rep_level() == 0
+}
+
+/// What a column that is not read holds.
+fn kind(column: &ColumnDescriptor) -> &'static str {
+    match () {
+        () if column.max_rep_level() > 0 => "list",
+        () if is_decimal(column) => "decimal that is too long",
+        () => "text or bytes",
+    }
+}
+
+/// The first names of many, and how many more there are.
+fn some(names: &[String]) -> String {
+    let shown = names.iter().take(MAX_SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(MAX_SHOWN) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
 }
 
 /// Whether whole numbers of a column stand for decimals.
@@ -300,7 +324,7 @@ fn plain(text: &str) -> String {
 mod tests {
     use std::sync::Arc;
 
-    use parquet::data_type::{DoubleType, Int64Type, Int96, Int96Type};
+    use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type, Int96, Int96Type};
     use parquet::file::writer::SerializedFileWriter;
     use parquet::schema::parser::parse_message_type;
 
@@ -338,5 +362,44 @@ mod tests {
         let since_s = series.time_s()[2] - series.time_s()[0];
         assert!((since_s - 1.0).abs() < 1e-5, "{since_s}");
         assert!((series.time_s()[0] - 20_412.0 * 86_400.0).abs() < 1e-5);
+    }
+
+    /// A column that is missing in what is read is in the file, as text or as a decimal of 128 bits.
+    #[test]
+    fn an_error_names_the_columns_that_hold_no_numbers() {
+        let read = |columns: &[&str]| {
+            let schema = format!("message log {{ {} }}", columns.join(" "));
+            let schema = Arc::new(parse_message_type(&schema).unwrap());
+            let mut writer =
+                SerializedFileWriter::new(Vec::<u8>::new(), schema, Arc::default()).unwrap();
+            let mut group = writer.next_row_group().unwrap();
+            for column in columns {
+                let mut writer = group.next_column().unwrap().unwrap();
+                let written = match column.contains("double") {
+                    true => writer.typed::<DoubleType>().write_batch(&[0.0, 1.0], None, None),
+                    false => {
+                        let texts = ["0", "1"].map(ByteArray::from);
+                        writer.typed::<ByteArrayType>().write_batch(&texts, None, None)
+                    }
+                };
+                assert_eq!(written.unwrap(), 2);
+                writer.close().unwrap();
+            }
+            group.close().unwrap();
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("log.parquet");
+            std::fs::write(&path, writer.into_inner().unwrap()).unwrap();
+            read_any_series(&path, None).unwrap_err().to_string()
+        };
+        let [text, decimal] =
+            ["required binary x_m (UTF8);", "required binary y_m (DECIMAL(38,2));"];
+        let error = read(&["required double time_s;", "required double q;", text, decimal]);
+        for expected in
+            ["\"x_m (text or bytes), not read\"", "\"y_m (decimal that is too long), not read\""]
+        {
+            assert!(error.contains(expected), "{error}");
+        }
+        let error = read(&[text]);
+        assert!(error.contains("(its columns: x_m (text or bytes))"), "{error}");
     }
 }
