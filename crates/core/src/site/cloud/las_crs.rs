@@ -29,6 +29,10 @@ const MERCATOR_SYSTEMS: [u16; 3] = [3857, 3785, 3395];
 const UTM: [std::ops::RangeInclusive<u16>; 4] =
     [32_601..=32_660, 32_701..=32_760, 25_828..=25_838, 26_901..=26_923];
 
+/// EPSG numbers of the State Plane systems of NAD 83 in feet: those of the United States, and international ones in
+/// Michigan, Montana, North Dakota, Oregon, South Carolina and Utah. Later realisations mix with systems in metres.
+const IN_FEET: std::ops::RangeInclusive<u16> = 2225..=2289;
+
 /// EPSG numbers of systems of heights: NAVD 88 in metres and both feet, and NGVD 29.
 const HEIGHT_SYSTEMS: [(u16, LengthUnit); 4] = [
     (5703, LengthUnit::Metre),
@@ -66,6 +70,13 @@ pub(in crate::site) struct Stated {
     pub height: Option<StatedUnit>,
     /// The EPSG number of a system whose unit it does not state.
     pub system: Option<u16>,
+}
+
+impl Stated {
+    /// The number of a system that is known to be in feet, if the unit is not stated.
+    pub(super) fn system_in_feet(&self) -> Option<u16> {
+        self.system.filter(|system| IN_FEET.contains(system))
+    }
 }
 
 /// What a header states; `None` if it has no coordinate system.

@@ -114,6 +114,12 @@ impl Stated {
     /// # Errors
     /// Why it has to be chosen, in words.
     fn unit_without_plane(&self) -> Result<LengthUnit, String> {
+        if let Some(system) = self.system_in_feet() {
+            return Err(format!(
+                "its coordinate system EPSG:{system} is one of the State Plane in feet, and it does not say in which; \
+                 look the system up, and say the unit of its coordinates (--unit us_survey_ft in most states, or ft)"
+            ));
+        }
         match self.height {
             None | Some(StatedUnit::Length(LengthUnit::Metre)) => Ok(LengthUnit::Metre),
             Some(StatedUnit::Length(height)) => Err(format!(
@@ -149,6 +155,14 @@ impl Stated {
                 "the unit of its coordinate system is not known here, and its coordinates were taken as \
                  {taken}: {on_purpose}"
             ),
+            (None, Some(system))
+                if unit == LengthUnit::Metre && self.system_in_feet().is_some() =>
+            {
+                format!(
+                    "its coordinate system EPSG:{system} is in feet, and its coordinates were taken as {taken}: \
+                     {on_purpose}; say the unit (--unit us_survey_ft or ft)"
+                )
+            }
             (None, Some(system)) => format!(
                 "its coordinate system is EPSG:{system}, whose unit it does not say; its coordinates were taken \
                  as {taken}: compare that with the system, and say another unit (--unit)"
@@ -160,10 +174,13 @@ impl Stated {
     }
 }
 
-/// The unit of easting and northing that a LAS file states, else that of its heights; `None` if it states none that
-/// is known.
+/// The unit of easting and northing that a LAS file states, else the usual one of its system, else that of its heights;
+/// `None` if it states none that is known.
 pub fn stated_cloud_unit(path: &Path) -> Option<LengthUnit> {
     let stated = stated(path);
+    if stated.system_in_feet().is_some() {
+        return Some(LengthUnit::SurveyFoot);
+    }
     match stated.plane.or(stated.height)? {
         StatedUnit::Length(unit) => Some(unit),
         StatedUnit::Other | StatedUnit::OffPlane | StatedUnit::Mercator => None,
@@ -261,6 +278,24 @@ mod tests {
         assert!(unknown.note.unwrap().contains("does not say the unit"));
     }
 
+    /// Feet that are taken as metres make a ground of more than three times its size.
+    #[test]
+    fn a_system_that_is_known_to_be_in_feet_is_not_taken_as_metres() {
+        for system in [2225, 2251, 2289] {
+            let by_number = Stated { system: Some(system), ..Stated::default() };
+            let error = CloudUnits::chosen(None, by_number).unwrap_err();
+            let said = format!("EPSG:{system} is one of the State Plane in feet");
+            assert!(error.contains(&said) && error.contains("--unit us_survey_ft"), "{error}");
+            let units = CloudUnits::chosen(Some(SURVEY_FEET), by_number).unwrap();
+            assert_eq!(units.in_metres([1.0; 3]), [SURVEY_FEET.length_m(); 3]);
+            assert!(units.note.unwrap().contains("taken as us_survey_ft: compare"));
+            let metres = CloudUnits::chosen(Some(METRES), by_number).unwrap();
+            assert!(
+                metres.note.unwrap().contains("is in feet, and its coordinates were taken as m:")
+            );
+        }
+    }
+
     #[test]
     fn a_unit_that_is_open_has_to_be_said() {
         let heights = of(None, length(FEET));
@@ -277,9 +312,9 @@ mod tests {
         let heights = of(length(METRES), Some(StatedUnit::Other));
         let note = CloudUnits::chosen(None, heights).unwrap().note.unwrap();
         assert!(note.contains("unit of its heights is not known"), "{note}");
-        let by_number = Stated { system: Some(2225), ..Stated::default() };
-        let units = CloudUnits::chosen(None, by_number).unwrap();
-        assert!(units.note.unwrap().contains("EPSG:2225, whose unit it does not say"));
+        let by_number = |system| Stated { system: Some(system), ..Stated::default() };
+        let units = CloudUnits::chosen(None, by_number(2056)).unwrap();
+        assert!(units.note.unwrap().contains("EPSG:2056, whose unit it does not say"));
         let off_plane = of(Some(StatedUnit::OffPlane), None);
         for chosen in [None, Some(METRES)] {
             let error = CloudUnits::chosen(chosen, off_plane).unwrap_err();
