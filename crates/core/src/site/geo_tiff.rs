@@ -102,7 +102,10 @@ fn keys(picture: &Path) -> Option<Keys> {
     };
     let shift = if value(RASTER_TYPE) == Some(PIXEL_IS_POINT) { -0.5 } else { 0.0 };
     let map = map.map(|map| PixelMap { corner_m: map.ground_m([shift, shift]), ..map });
-    Some(Keys { map, unit: of_keys(value).plane })
+    let stated = of_keys(value);
+    // One of two feet, which have to be told apart by whoever knows.
+    let in_feet = stated.system_in_feet().map(|_| StatedUnit::Other);
+    Some(Keys { map, unit: stated.plane.or(in_feet) })
 }
 
 #[cfg(test)]
@@ -157,6 +160,12 @@ mod tests {
         let site = Site::load(&path).unwrap();
         assert_eq!(site.orthophoto.unwrap().world_unit, LengthUnit::SurveyFoot);
         assert!(site.notes.is_empty(), "{:?}", site.notes);
+        // A system of State Plane in one of two feet, and one that is not known here.
+        write(&path, &[1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2225]);
+        let error = Site::load(&path).unwrap_err().to_string();
+        assert!(error.contains("unit of its coordinates is not known here; say it"), "{error}");
+        write(&path, &[1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2056]);
+        assert_eq!(Site::load(&path).unwrap().orthophoto.unwrap().world_unit, LengthUnit::Metre);
         // Longitude and latitude.
         write(&path, &[1, 1, 0, 1, 1024, 0, 1, 2]);
         assert!(Site::load(&path).unwrap_err().to_string().contains("road.tif: its coordinates"));

@@ -74,7 +74,7 @@ pub(in crate::site) struct Stated {
 
 impl Stated {
     /// The number of a system that is known to be in feet, if the unit is not stated.
-    pub(super) fn system_in_feet(&self) -> Option<u16> {
+    pub(in crate::site) fn system_in_feet(&self) -> Option<u16> {
         self.system.filter(|system| IN_FEET.contains(system))
     }
 }
