@@ -67,6 +67,11 @@ impl Controls {
             || self.closed_loop.as_ref().is_some_and(ClosedLoop::steers)
     }
 
+    /// Whether a stability control acts by the motion.
+    pub fn has_stability_control(&self) -> bool {
+        self.closed_loop.as_ref().is_some_and(|closed_loop| closed_loop.esc.is_some())
+    }
+
     /// Whether a wheel is driven.
     pub fn is_driven(&self) -> bool {
         let efforts = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());

@@ -6,7 +6,7 @@ use impactlab_core::data::{Channel, TimeSeries};
 use impactlab_core::numerics::interpolate;
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
-use impactlab_core::vehicle::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, Wheel};
+use impactlab_core::vehicle::{BRAKE_TORQUES, DRIVE_TORQUES, Wheel};
 use impactlab_study::analysis::Analysis;
 
 /// What figures call both vehicles.
@@ -137,9 +137,6 @@ pub fn figure_readout(figure: &Figure, x_si: f64) -> String {
 
 /// The vehicles of which it is known what was done to their wheels.
 fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
-    let has_esc = |controls: &Controls| {
-        controls.closed_loop.as_ref().is_some_and(|closed_loop| closed_loop.esc.is_some())
-    };
     let struck = analysis.simulation.as_ref().map(|motion| {
         let radius_m = analysis.vehicle.tires.rolling_radius_m;
         DrivenVehicle {
@@ -148,10 +145,7 @@ fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
             style: LineStyle::Solid,
             motion: &motion.series,
             torques_n_m: analysis.controls.torques_n_m(motion.series.time_s(), radius_m),
-            has_stability_control: analysis
-                .struck
-                .as_ref()
-                .is_some_and(|struck| has_esc(&struck.controls)),
+            has_stability_control: analysis.has_stability_control,
         }
     });
     let striking = analysis.striking.as_ref().map(|track| {
@@ -162,7 +156,7 @@ fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
             style: LineStyle::Dashed,
             motion: &track.motion,
             torques_n_m: track.controls.torques_n_m(track.motion.time_s(), radius_m),
-            has_stability_control: has_esc(&track.start.controls),
+            has_stability_control: track.start.controls.has_stability_control(),
         }
     });
     struck.into_iter().chain(striking).collect()
@@ -246,14 +240,20 @@ mod tests {
     use impactlab_core::collision::Scenario;
     use impactlab_core::units::STANDARD_GRAVITY_M_S2;
     use impactlab_core::vehicle::{
-        Braking, Ending, Integrator, PitDriver, Preset, StabilityControl,
+        Braking, Ending, Integrator, PitDriver, Preset, StabilityControl, VehicleState,
     };
-    use impactlab_study::analysis::{PulseSetup, Settings, analyse_scenario};
+    use impactlab_study::analysis::{
+        DriveSetup, PulseSetup, Settings, analyse_drive, analyse_scenario,
+    };
 
     fn analysis(struck: Ending, striking: Ending) -> Analysis {
         let mut scenario = Scenario::example();
         scenario.striking_ending = Some(striking);
-        let settings = Settings {
+        analyse_scenario(&scenario, &PulseSetup::default(), &settings(struck)).unwrap()
+    }
+
+    fn settings(struck: Ending) -> Settings {
+        Settings {
             struck: Preset::Target.parameters(),
             striking: Preset::Bullet2000.parameters(),
             ending: struck,
@@ -262,8 +262,7 @@ mod tests {
             ends_at_rest: false,
             one_contact: false,
             friction_zones: Vec::new(),
-        };
-        analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap()
+        }
     }
 
     fn figures(analysis: &Analysis) -> Vec<Figure> {
@@ -337,6 +336,30 @@ mod tests {
         assert!((sum / total - 1.0).abs() < 1e-9, "{sum} of {total}");
         let is_wheel = |name: &str| Wheel::ALL.iter().any(|wheel| name.starts_with(wheel.label()));
         assert!(wheels.iter().all(|(name, _)| is_wheel(name)), "{wheels:?}");
+    }
+
+    /// A car that nothing strikes had no curves of its single brakes.
+    #[test]
+    fn the_brakes_of_each_wheel_are_those_of_a_car_without_a_force_as_well() {
+        let esc = Some(StabilityControl::default());
+        let setup = DriveSetup {
+            initial: VehicleState {
+                vx_body_m_s: 20.0,
+                yaw_rate_rad_s: 1.0,
+                ..VehicleState::default()
+            },
+            load: None,
+            steer: None,
+            wheels: None,
+            notes: Vec::new(),
+        };
+        let settings = settings(Ending { esc, ..Ending::default() });
+        let analysis = analyse_drive("spin", setup, &settings).unwrap();
+        let figures = figures(&analysis);
+        let labels: Vec<&str> = figures.iter().map(|figure| &*figure.y.label).collect();
+        let expected = [WheelInput::Braking, WheelInput::StruckBrakes].map(WheelInput::label);
+        assert_eq!(labels, expected);
+        assert!(!names(&figures[1]).is_empty());
     }
 
     #[test]

@@ -152,6 +152,7 @@ fn not_simulated(
         footprint: Footprint::from(&settings.struck.geometry),
         vehicle: settings.struck.clone(),
         struck,
+        has_stability_control: controls.has_stability_control(),
         controls,
         friction_zones: settings.friction_zones.clone(),
         force: load.map(|(force, _)| force),

@@ -174,6 +174,8 @@ pub struct Analysis {
     pub struck: Option<StruckVehicle>,
     /// What steers, drives, brakes and locks the wheels of the struck vehicle in the simulation.
     pub controls: Controls,
+    /// Whether some of that is the work of a stability control, which `controls` do not tell apart.
+    pub has_stability_control: bool,
     /// Parts of the ground with their own friction, over which the vehicles were simulated.
     pub friction_zones: Vec<FrictionZone>,
     /// Motion of the struck vehicle simulated with the 4DOF model; `None` if it could not be

@@ -215,6 +215,7 @@ pub(super) fn analysis(
         footprint: outlines[0],
         force,
         controls: applied(&motion, &struck),
+        has_stability_control: struck.controls.has_stability_control(),
         friction_zones: struck.friction_zones.clone(),
         struck: Some(struck),
         simulation: Some(motion),
