@@ -482,6 +482,11 @@ fn a_question_that_is_printed_has_the_same_answer_when_it_is_asked() {
     let mut answered = impactlab(&["ask", text(&path)]).json();
     answered["out"] = Value::Null;
     assert_eq!(answered, answer);
+    // Windows PowerShell writes a byte order mark before what it is given.
+    let marked = write(&folder, "marked.json", &format!("\u{feff}{}", request.out));
+    assert_eq!(impactlab(&["ask", "--print-request", text(&marked)]).json(), request.json());
+    let checked = impactlab(&["check", text(&marked)]);
+    assert_eq!(checked.code, 0, "{}", checked.out);
     let wrong = write(&folder, "wrong.json", "{\"question\": \"simulate\"}");
     let ran = impactlab(&["ask", text(&wrong)]);
     assert!(ran.error_line().contains("is no request"), "{}", ran.err);

@@ -36,7 +36,9 @@ use crate::plan::{
 use crate::row::sampled_requests;
 use crate::vary::{Distribution, Vary};
 use impactlab_core::collision::{SCENARIO_PRESETS, Scenario};
-use impactlab_core::data::{MAX_SETTINGS_BYTES, TomlError, TomlFile, read_utf8};
+use impactlab_core::data::{
+    MAX_SETTINGS_BYTES, TomlError, TomlFile, read_utf8, without_byte_order_mark,
+};
 use impactlab_core::program;
 use impactlab_core::ranges::{REST_LIMIT, ROAD_FRICTION_SIGMA};
 use impactlab_core::vehicle::{ROAD_FRICTION_SPREAD, built_in_vehicle};
@@ -267,7 +269,8 @@ impl RequestFile {
         let path = folder.join(&self.file);
         let text = read_utf8(&path, MAX_SETTINGS_BYTES)?;
         let wrong = |source| SweepError::Request { path: path.clone(), source };
-        let request: Request = serde_json::from_str(&text).map_err(wrong)?;
+        let request: Request =
+            serde_json::from_str(without_byte_order_mark(&text)).map_err(wrong)?;
         // With what the file leaves out, so that it can be varied too.
         let value = serde_json::to_value(&request).map_err(wrong)?;
         let (seed_at, outcomes) = (self.seed_at.into_vec(), self.outcomes);

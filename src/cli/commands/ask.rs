@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, under_bar};
-use impactlab_core::data::{MAX_SETTINGS_BYTES, read_utf8};
+use impactlab_core::data::{MAX_SETTINGS_BYTES, read_utf8, without_byte_order_mark};
 use impactlab_study::{InputKind, Request};
 
 /// Answer a question that stands in a JSON file, as --print-request writes it
@@ -34,7 +34,7 @@ pub(in crate::cli) fn run(args: &AskArgs, console: &mut Console<'_>) -> Result<V
         Err(other) => other.into(),
     };
     let text = read_utf8(path, MAX_SETTINGS_BYTES).map_err(|error| is_other(error.into()))?;
-    let request: Request = serde_json::from_str(&text)
+    let request: Request = serde_json::from_str(without_byte_order_mark(&text))
         .map_err(|source| is_other(CliError::Request { path: path.clone(), source }))?;
     if console.print_request {
         print_json(console.out, &request)?;

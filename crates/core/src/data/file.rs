@@ -59,6 +59,11 @@ pub fn read_utf8(path: &Path, limit: u64) -> Result<String, DataError> {
     })
 }
 
+/// A text without the byte order mark with which some editors begin a file: JSON and numbers have none.
+pub fn without_byte_order_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
 /// The paths of all entries of a folder, in no particular order.
 ///
 /// # Errors

@@ -103,7 +103,7 @@ pub use dataset::{CASES_FILE, Case, Dataset, DatasetKind, Outcome};
 pub(crate) use dataset::{named_cases, names_a_file};
 pub use dialect::{Dialect, Separator};
 pub use error::{DataError, Place};
-pub use file::{list_folder, open_file, read_bytes, read_utf8};
+pub use file::{list_folder, open_file, read_bytes, read_utf8, without_byte_order_mark};
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub use foreign::is_gltf;
 pub use formats::{

@@ -13,7 +13,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::data::{MAX_SETTINGS_BYTES, read_utf8};
+use crate::data::{MAX_SETTINGS_BYTES, read_utf8, without_byte_order_mark};
 use crate::ranges::{PIXEL_SIZE, SURVEY_COORDINATE};
 use crate::site::{LengthUnit, PixelMap, SiteError, SiteOrigin};
 
@@ -50,8 +50,7 @@ impl WorldFile {
             text: text.chars().take(80).collect(),
             expected,
         };
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let lines: Vec<&str> = without_byte_order_mark(text).lines().map(str::trim).collect();
         let at = |idx: usize| lines.get(idx).copied().unwrap_or_default();
         let mut numbers = [0.0; 6];
         for (idx, number) in numbers.iter_mut().enumerate() {

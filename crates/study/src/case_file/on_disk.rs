@@ -9,7 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::case_file::{CaseError, Change, UsedFile};
-use impactlab_core::data::{MAX_RESULTS_BYTES, read_utf8};
+use impactlab_core::data::{MAX_RESULTS_BYTES, read_utf8, without_byte_order_mark};
 use impactlab_core::numerics::sha256_hex;
 
 /// Key of the seal.
@@ -61,6 +61,7 @@ pub(super) fn sealed(text: &str) -> String {
 
 /// The seal of a text, and the digest of all else; `None` where the text is no JSON object.
 fn split(text: &str) -> Option<(Option<String>, String)> {
+    let text = without_byte_order_mark(text);
     let Value::Object(mut all) = serde_json::from_str(text).ok()? else { return None };
     let seal = all.remove(SEAL).map(|seal| seal.as_str().unwrap_or_default().to_owned());
     Some((seal, sha256_hex([Value::Object(all).to_string().as_bytes()])))
@@ -90,6 +91,12 @@ mod tests {
         assert_eq!(CaseFile::load(&path).unwrap().to_text(&path).unwrap(), text);
         let state = |text: &str| CaseOnDisk::from_text(text, &path).is_as_saved;
         assert_eq!(state(&text.replace("\n  ", "\n      ")), Some(true));
+        // An editor puts a byte order mark before it: no edit, but the digest is that of the bytes.
+        let marked = format!("\u{feff}{text}");
+        let on_disk = CaseOnDisk::from_text(&marked, &path);
+        assert_eq!(on_disk.is_as_saved, Some(true));
+        assert_eq!(on_disk.file.sha256, sha256_hex([marked.as_bytes()]));
+        assert_eq!(CaseFile::parse(&marked, &path).unwrap(), CaseFile::load(&path).unwrap());
         let edited = text.replace("from the north", "from the south");
         assert_eq!(state(&edited), Some(false));
         let change = CaseOnDisk::from_text(&edited, &path).change().unwrap();

@@ -8,7 +8,9 @@ use serde_json::Value;
 use crate::case_file::on_disk::sealed;
 use crate::case_file::paths::{absolute, relative, replace_strings};
 use crate::case_file::{CaseError, CaseFile};
-use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_bytes};
+use impactlab_core::data::{
+    Existing, MAX_RESULTS_BYTES, read_utf8, without_byte_order_mark, write_bytes,
+};
 
 /// Ending of the names of case files.
 pub const CASE_ENDING: &str = "impactlab";
@@ -43,6 +45,7 @@ impl CaseFile {
     /// As for [`CaseFile::load`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, CaseError> {
         let wrong = |source: serde_json::Error| CaseError::syntax(path, &source);
+        let text = without_byte_order_mark(text);
         let header: Header = serde_json::from_str(text).map_err(wrong)?;
         if header.format != FORMAT {
             return Err(CaseError::Format { path: path.to_owned(), got: header.format });

@@ -14,7 +14,7 @@ use crate::{InputKind, Request};
 use impactlab_core::collision::Scenario;
 use impactlab_core::compare::PairRecords;
 use impactlab_core::data::{
-    CASES_FILE, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, TomlFile, read_utf8,
+    CASES_FILE, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, TomlFile, read_utf8, without_byte_order_mark,
 };
 use impactlab_core::error_chain;
 use impactlab_core::site::{
@@ -275,7 +275,8 @@ fn read_cloud(path: &Path) -> Result<CloudSummary, SiteError> {
 /// Whether a file is JSON that has not what every comparison has.
 fn is_other_json(path: &Path) -> bool {
     let text = read_utf8(path, MAX_RESULTS_BYTES).ok();
-    let found = text.and_then(|text| serde_json::from_str::<Value>(&text).ok());
+    let json = |text: String| serde_json::from_str::<Value>(without_byte_order_mark(&text)).ok();
+    let found = text.and_then(json);
     found.is_some_and(|found| ["models", "test"].iter().any(|key| found.get(key).is_none()))
 }
 
@@ -283,7 +284,7 @@ fn read_request(path: &Path) -> Result<InputFile, InputError> {
     let kind = InputKind::Request;
     let text =
         read_utf8(path, MAX_SETTINGS_BYTES).map_err(|error| InputError::new(kind, &error))?;
-    match serde_json::from_str(&text) {
+    match serde_json::from_str(without_byte_order_mark(&text)) {
         Ok(request) => Ok(InputFile::Request(Box::new(request))),
         Err(error) => {
             let message = format!("{}: {error}", path.display());
