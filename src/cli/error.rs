@@ -35,6 +35,16 @@ pub enum CliError {
         /// What it does.
         reach: Box<Reach>,
     },
+    /// A checkpoint has the name of a file of the results.
+    #[error(
+        "{}: is a file of the results in --out, so it cannot be the checkpoint; choose another name for \
+         --checkpoint",
+        path.display()
+    )]
+    IsResult {
+        /// The checkpoint.
+        path: PathBuf,
+    },
     /// Standard output is closed or full.
     #[error("the output cannot be written")]
     Output(#[from] io::Error),

@@ -53,6 +53,24 @@ fn speeds_have_intervals_and_the_same_seed_gives_the_same() {
     assert_eq!(first, second);
 }
 
+/// That the checkpoint had the name of a result was found after the run, which was lost with it.
+#[test]
+fn a_checkpoint_in_place_of_a_result_is_refused_before_the_run() {
+    let folder = TempDir::new().unwrap();
+    let (out, below) = (folder.path().join("r"), folder.path().join("below"));
+    fs::create_dir(&below).unwrap();
+    for checkpoint in ["r/particles.csv", "below/../r/reconstruction.json", "r/manifest.json"] {
+        let checkpoint = folder.path().join(checkpoint);
+        let args = ["--particles", "60", "--out", text(&out), "--checkpoint", text(&checkpoint)];
+        let ran = program().args(["reconstruct", EVIDENCE]).args(args).output().unwrap();
+        let error = String::from_utf8(ran.stderr).unwrap();
+        assert!(!ran.status.success(), "{error}");
+        let expected = "is a file of the results in --out, so it cannot be the checkpoint";
+        assert!(error.contains(expected), "{error}");
+        assert!(!out.exists(), "nothing is left of a run that was not begun");
+    }
+}
+
 /// The answer of sixty particles held a speed "with a probability of 90 %".
 #[test]
 fn few_particles_have_no_interval_and_say_what_to_do() {

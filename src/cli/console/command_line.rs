@@ -181,6 +181,7 @@ impl Console<'_> {
         let request: Request = question.clone().into();
         let read = [&request.files_read()[..], self.targets.made_from()].concat();
         let output = OutputFolder::begin(folder, existing, known, read)?;
+        self.targets.refuse_results(folder, known)?;
         let answer = self.answer(question)?;
         self.targets.answered(&write(&output, &answer)?);
         let (record, _) = self.targets.run_record();

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use crate::cli::CliError;
-use impactlab_core::data::write::{FileDigest, RunRecord, check_inputs};
+use impactlab_core::data::write::{FileDigest, MANIFEST_FILE, RunRecord, check_inputs};
 use impactlab_core::data::{Existing, check_target};
 use impactlab_study::{Provenance, Request};
 
@@ -98,6 +98,26 @@ impl Targets {
     pub(super) fn run_record(&self) -> (RunRecord, Vec<PathBuf>) {
         let command = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
         (RunRecord { command, ..self.record.clone() }, self.read.clone())
+    }
+
+    /// Checks that no file is one of the results in a folder, which is there by now.
+    ///
+    /// - `known`: names of the results beside the manifest.
+    ///
+    /// # Errors
+    /// [`CliError::IsResult`].
+    pub(super) fn refuse_results(&self, folder: &Path, known: &[&str]) -> Result<(), CliError> {
+        let place = |path: &Path| {
+            let path = std::path::absolute(path).ok()?;
+            Some(path.parent()?.canonicalize().ok()?.join(path.file_name()?))
+        };
+        let names = known.iter().copied().chain([MANIFEST_FILE]);
+        let results: Vec<PathBuf> = names.filter_map(|name| place(&folder.join(name))).collect();
+        let is_result = |path: &&PathBuf| place(path).is_some_and(|path| results.contains(&path));
+        match self.files.iter().find(is_result) {
+            None => Ok(()),
+            Some(path) => Err(CliError::IsResult { path: path.clone() }),
+        }
     }
 
     fn refuse(&self, inputs: &[PathBuf]) -> Result<(), CliError> {
