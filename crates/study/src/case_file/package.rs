@@ -22,7 +22,7 @@ use crate::case_file::portable::portable_name;
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
 use crate::{ForceSource, ModelChoice, Request};
-use impactlab_core::data::write::{WriterLock, check_ending, check_inputs};
+use impactlab_core::data::write::{WriterLock, check_ending, check_inputs, sync_folder};
 use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, open_file, read_utf8, write_atomically};
 
 /// Folder of the files within a package.
@@ -247,12 +247,26 @@ pub fn unpack(package: &Path, folder: &Path) -> Result<PathBuf, CaseError> {
     // What is wrong with it is told of the place that it would have.
     let text = read_utf8(&unpacked.join(&case), MAX_RESULTS_BYTES)?;
     CaseFile::parse(&text, &absolute.join(&case))?;
+    // A name that is on the disk before what it names would leave empty files after a loss of power.
+    sync_folders(&unpacked).map_err(io(folder))?;
     fs::rename(&unpacked, &absolute).map_err(|source| match absolute.exists() {
         // Another process has made it by now.
         true => CaseError::FolderExists { path: folder.to_owned() },
         false => io(folder)(source),
     })?;
+    sync_folder(parent).map_err(io(parent))?;
     Ok(absolute.join(case))
+}
+
+/// Brings the names in a folder and in all folders below it to the disk.
+fn sync_folders(folder: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            sync_folders(&entry.path())?;
+        }
+    }
+    sync_folder(folder)
 }
 
 /// Checks everything that a package says of its content, and returns the name of its case. Nothing is
@@ -352,7 +366,7 @@ fn extract(
         return Err(CaseError::NoPackage { path: package.to_owned(), why });
     }
     copied.map_err(io)?;
-    Ok(())
+    out.sync_all().map_err(io)
 }
 
 /// Removes the folders that killed runs were unpacking into; those of living ones are locked.

@@ -252,7 +252,10 @@ fn special_kind(metadata: &Metadata) -> Option<&'static str> {
 }
 
 /// Brings the names in a folder to the disk, where the system can do that.
-pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
+///
+/// # Errors
+/// Those of the operating system.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
     if cfg!(not(unix)) {
         return Ok(());
     }

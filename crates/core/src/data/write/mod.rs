@@ -22,7 +22,7 @@ mod temporary;
 
 pub use digest::FileDigest;
 pub use error::WriteError;
-pub use file::{Existing, check_ending, check_target, write_atomically, write_bytes};
+pub use file::{Existing, check_ending, check_target, sync_folder, write_atomically, write_bytes};
 pub use folder::OutputFolder;
 pub use inputs::check_inputs;
 pub use lock::WriterLock;
