@@ -157,6 +157,27 @@ fn a_second_contact_is_flagged() {
     assert_eq!(away["end"], plain["end"], "the struck car's motion depends on the other's");
 }
 
+/// That a wheel of the striking vehicle lifts was told of no scenario.
+#[test]
+fn a_wheel_of_the_striking_vehicle_that_lifts_is_told_with_whose_it_is() {
+    let folder = TempDir::new().unwrap();
+    let car = std::fs::read_to_string("assets/vehicles/bullet-2000.toml").unwrap();
+    let high = car.replace("\ncg_height_m = 0.5113\n", "\ncg_height_m = 1.4\n");
+    assert_ne!(high, car);
+    let high = write(&folder, "high.toml", &high);
+    let away = std::fs::read_to_string(SCENARIO).unwrap()
+        + "\n[bullet_ending]\nsteer_deg = -8\nsteer_rise_s = 0.2\n";
+    let away = write(&folder, "away.toml", &away);
+    let args = ["simulate", "--scenario", text(&away), "--bullet", text(&high)];
+    let report = answer(&args);
+    let mut flags = report["flags"].as_array().unwrap().iter();
+    let lift = flags.find(|flag| flag["kind"] == "wheel_lift").unwrap();
+    assert_eq!(lift["vehicle"], "striking");
+    assert!(lift["message"].as_str().unwrap().starts_with("striking vehicle: the "), "{lift}");
+    let printed = ok(program().args(args).output().unwrap());
+    assert!(printed.contains("warning: wheel lift: striking vehicle: the "), "{printed}");
+}
+
 /// The momentum solution and the force network describe one contact: both are named.
 #[test]
 fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {

@@ -31,8 +31,8 @@ use impactlab_core::collision::{
 use impactlab_core::compare::{MotionError, ReplayError};
 use impactlab_core::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
 use impactlab_core::vehicle::{
-    ControlledVehicle, Controls, Ending, FrictionZone, Integrator, Motion, SimulationError,
-    VehicleParameters,
+    ControlledVehicle, Controls, Ending, FrictionZone, Integrator, Motion, MotionFlag,
+    SimulationError, VehicleParameters,
 };
 
 pub use case::analyse_case;
@@ -124,6 +124,8 @@ pub struct VehicleTrack {
     pub motion: TimeSeries,
     /// What steers, drives, brakes and locks its wheels in this motion.
     pub controls: Controls,
+    /// What is flagged in this motion, as far as it is simulated.
+    pub flags: Vec<MotionFlag>,
 }
 
 impl VehicleTrack {

@@ -225,6 +225,7 @@ pub(super) fn analysis(
             controls: applied(&striking_motion, &striking),
             start: striking,
             motion: striking_motion.series,
+            flags: striking_motion.flags,
         }),
         pair: None,
         phases: Vec::new(),

@@ -5,7 +5,8 @@ use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::data::{Case, Channel, ForceAttributes, SeriesError, TimeSeries};
 use impactlab_core::vehicle::frames::body_from_world;
 use impactlab_core::vehicle::{
-    ContactPoint, Controls, Manoeuvre, OUTPUT_INTERVAL_S, VehicleParameters, VehicleState,
+    ContactPoint, Controls, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, VehicleParameters,
+    VehicleState,
 };
 
 /// Position at each recorded sample, m, and state of the vehicle at the last one.
@@ -38,7 +39,7 @@ pub(super) fn striking_track(
     let [_, yaw_inertia] = attributes.yaw_inertia_kg_m2;
     let vehicle = settings.striking.clone().with_mass(mass_kg, yaw_inertia);
     let footprint = Footprint::from(&vehicle.geometry);
-    let motion = append_coasting(&case.series, yaw_rad, recorded, &vehicle, settings)?;
+    let (motion, flags) = append_coasting(&case.series, yaw_rad, recorded, &vehicle, settings)?;
     let yaw_rad = yaw_rad.first().copied().unwrap_or(attributes.theta_b_rad);
     let pose = Pose { x_m: x, y_m: y, yaw_rad };
     // The struck vehicle heads along X from the origin.
@@ -59,7 +60,7 @@ pub(super) fn striking_track(
         controls: Controls::default(),
         friction_zones: settings.friction_zones.clone(),
     };
-    Ok(Some(VehicleTrack { footprint, start, motion, controls: Controls::default() }))
+    Ok(Some(VehicleTrack { footprint, start, motion, controls: Controls::default(), flags }))
 }
 
 /// Integrates the recorded world velocities by the trapezoidal rule from a start [x, y], m. `None`
@@ -91,14 +92,14 @@ fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
     Some(Recorded { x_m, y_m, end })
 }
 
-/// Appends the coasting to the recorded positions and yaw angles.
+/// Appends the coasting to the recorded positions and yaw angles, and returns what is flagged in it as well.
 fn append_coasting(
     series: &TimeSeries,
     yaw_rad: &[f64],
     recorded: Recorded,
     vehicle: &VehicleParameters,
     settings: &Settings,
-) -> Result<TimeSeries, AnalysisError> {
+) -> Result<(TimeSeries, Vec<MotionFlag>), AnalysisError> {
     let recorded_end_s = series.time_s().last().copied().unwrap_or(0.0);
     let manoeuvre = Manoeuvre {
         initial: recorded.end,
@@ -106,7 +107,8 @@ fn append_coasting(
         friction_zones: settings.friction_zones.clone(),
         ..Manoeuvre::default()
     };
-    let coasting = vehicle.simulate(&manoeuvre, settings.integrator)?.series;
+    let Motion { series: coasting, flags, .. } =
+        vehicle.simulate(&manoeuvre, settings.integrator)?;
     let later = coasting.time_s().iter().skip(1).map(|t| t + recorded_end_s);
     let mut motion = TimeSeries::new(series.time_s().iter().copied().chain(later).collect())?;
     let mut join = |channel, before: &[f64]| -> Result<(), SeriesError> {
@@ -116,5 +118,5 @@ fn append_coasting(
     join(Channel::X, &recorded.x_m)?;
     join(Channel::Y, &recorded.y_m)?;
     join(Channel::Yaw, yaw_rad)?;
-    Ok(motion)
+    Ok((motion, flags.into_iter().map(|flag| flag.later_by(recorded_end_s)).collect()))
 }

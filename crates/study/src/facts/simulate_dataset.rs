@@ -34,7 +34,6 @@ impl SimulateDatasetReport {
 
     fn case_table(&self) -> FactTable {
         let row = |case: &ReplayedCaseReport| {
-            let flags: Vec<&str> = case.flags.iter().map(|f| f.caveat.text.as_str()).collect();
             let spin = case.spin.then_some(Value::Term(Term::Spin));
             let error = &case.error;
             let values = vec![
@@ -42,7 +41,7 @@ impl SimulateDatasetReport {
                 Value::Decimals(Quantity::Length, error.average_error_m, 3),
                 Value::Decimals(Quantity::Length, error.final_error_m, 3),
                 Value::Decimals(Quantity::Angle, error.final_heading_error_rad, 1),
-                Value::English(flags.join("; ")),
+                flags(case),
             ];
             Fact::row(Value::Text(case.case.clone()), values)
         };
@@ -78,7 +77,8 @@ impl SimulateDatasetReport {
                 .into_iter()
                 .chain(errors(&pair.striking))
                 .chain(both(&pair.contact_s, Quantity::Time, 2))
-                .chain(both(&pair.impulse_n_s, Quantity::Impulse, 2));
+                .chain(both(&pair.impulse_n_s, Quantity::Impulse, 2))
+                .chain([flags(case)]);
             Fact::row(Value::Text(case.case.clone()), values.collect())
         };
         let pairs = self.cases.iter().filter_map(|case| Some((case, case.pair.as_ref()?)));
@@ -94,6 +94,7 @@ impl SimulateDatasetReport {
             Term::ContactTimeRecorded,
             Term::ContactImpulse,
             Term::ContactImpulseRecorded,
+            Term::Flags,
         ])
     }
 
@@ -133,6 +134,12 @@ impl SimulateDatasetReport {
         let rows = rows.flatten().collect();
         FactTable::new(Term::ReplaySummary, rows).with_rows(Term::Cases).with_columns(&columns)
     }
+}
+
+/// What is flagged in a case.
+fn flags(case: &ReplayedCaseReport) -> Value {
+    let flags: Vec<&str> = case.flags.iter().map(|flag| flag.caveat.text.as_str()).collect();
+    Value::English(flags.join("; "))
 }
 
 /// The contact of recorded pairs.

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::analysis::{FEWEST_DRAWS, SecondContacts};
 use crate::word;
-use impactlab_core::collision::SecondContact;
+use impactlab_core::collision::{Role, SecondContact};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatText};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::{MotionFlag, ROLL_LIMIT_RAD};
@@ -19,6 +19,8 @@ pub struct FlagReport {
     pub caveat: Caveat,
     /// When it is first raised, s.
     pub time_s: f64,
+    /// Whose motion it is of, `struck` or `striking`; `None` of both vehicles, and where there is only one.
+    pub vehicle: Option<String>,
     /// The wheel that lifts.
     pub wheel: Option<String>,
     /// Where the vehicles meet again.
@@ -46,6 +48,8 @@ struct FlagJson {
     kind: CaveatKind,
     /// When it is first raised, s.
     time_s: f64,
+    /// Whose motion it is of, `struck` or `striking`; null of both vehicles, and where there is only one.
+    vehicle: Option<String>,
     /// The wheel that lifts.
     wheel: Option<String>,
     /// Roll angle at that time, rad.
@@ -61,11 +65,12 @@ struct FlagJson {
 }
 
 impl From<FlagReport> for FlagJson {
-    fn from(FlagReport { caveat, time_s, wheel, contact }: FlagReport) -> Self {
+    fn from(FlagReport { caveat, time_s, vehicle, wheel, contact }: FlagReport) -> Self {
         let Caveat { kind, value, text, .. } = caveat;
         Self {
             kind,
             time_s,
+            vehicle,
             wheel,
             roll_rad: value.filter(|_| kind == CaveatKind::RollLimit),
             position_m: contact.map(|contact| contact.position_m),
@@ -80,7 +85,40 @@ impl FlagReport {
     /// A flag about which no more is known than when it is raised.
     fn new(kind: CaveatKind, time_s: f64, message: impl Into<CaveatText>) -> Self {
         let caveat = Caveat::new(kind, message).with_value("time [s]", time_s);
-        Self { caveat, time_s, wheel: None, contact: None }
+        Self { caveat, time_s, vehicle: None, wheel: None, contact: None }
+    }
+
+    /// What is flagged in the motion of one of two vehicles.
+    pub(crate) fn of_vehicle(role: Role, flag: &MotionFlag) -> Self {
+        let [struck, striking] = Role::WORDS;
+        let (vehicle, text) = match role {
+            Role::Struck => {
+                (struck, Phrase::new("struck vehicle: {0}", "Gestoßenes Fahrzeug: {0}"))
+            }
+            Role::Striking => {
+                (striking, Phrase::new("striking vehicle: {0}", "Stoßendes Fahrzeug: {0}"))
+            }
+        };
+        let text = text.with(PhraseValue::phrase(flag.phrase()));
+        Self { vehicle: Some(vehicle.to_owned()), ..Self::of_motion(flag, text) }
+    }
+
+    fn of_motion(flag: &MotionFlag, text: Phrase) -> Self {
+        match flag {
+            MotionFlag::WheelLift { wheel, time_s } => {
+                let flag = Self::new(CaveatKind::WheelLift, *time_s, text);
+                Self { wheel: Some(word(wheel)), ..flag }
+            }
+            MotionFlag::RollLimit { time_s, roll_rad } => {
+                let flag = Self::new(CaveatKind::RollLimit, *time_s, text);
+                let caveat = flag
+                    .caveat
+                    .with_value("roll angle [rad]", *roll_rad)
+                    .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]);
+                Self { caveat, ..flag }
+            }
+            MotionFlag::EnergyGain { time_s } => Self::new(CaveatKind::EnergyGain, *time_s, text),
+        }
     }
 
     /// Until when positions have a probability, s: to a second contact that is more than a rare one.
@@ -215,19 +253,7 @@ impl From<&SecondContacts> for FlagReport {
 
 impl From<&MotionFlag> for FlagReport {
     fn from(flag: &MotionFlag) -> Self {
-        let flagged = |kind, time_s: f64| Self::new(kind, time_s, flag.phrase());
-        match flag {
-            MotionFlag::WheelLift { wheel, time_s } => {
-                Self { wheel: Some(word(wheel)), ..flagged(CaveatKind::WheelLift, *time_s) }
-            }
-            MotionFlag::RollLimit { time_s, roll_rad } => {
-                let caveat = Caveat::new(CaveatKind::RollLimit, flag.phrase())
-                    .with_value("roll angle [rad]", *roll_rad)
-                    .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]);
-                Self { caveat, ..flagged(CaveatKind::RollLimit, *time_s) }
-            }
-            MotionFlag::EnergyGain { time_s } => flagged(CaveatKind::EnergyGain, *time_s),
-        }
+        Self::of_motion(flag, flag.phrase())
     }
 }
 
@@ -300,7 +326,8 @@ mod tests {
         let json = serde_json::to_value([&roll, &lift]).unwrap();
         let form = |flag: &FlagReport, kind: &str, wheel: Option<&str>, roll_rad: Option<f64>| {
             json!({
-                "kind": kind, "time_s": flag.time_s, "wheel": wheel, "roll_rad": roll_rad,
+                "kind": kind, "time_s": flag.time_s, "vehicle": flag.vehicle, "wheel": wheel,
+                "roll_rad": roll_rad,
                 "position_m": null, "closing_speed_m_s": null, "probability": null,
                 "message": flag.caveat.text,
             })
@@ -312,6 +339,38 @@ mod tests {
         let german = |flag: &FlagReport| flag.caveat.text_in(&german, &str::to_owned).unwrap();
         assert!(german(&roll).starts_with("Ein Wankwinkel von 34,4° bei 0,40 s"), "{roll:?}");
         assert!(german(&lift).contains("front left"), "{lift:?}");
+    }
+
+    /// That a wheel lifts was told of recorded pairs without a word of which vehicle.
+    #[test]
+    fn a_flag_of_one_of_two_vehicles_says_whose_it_is() {
+        let lift = MotionFlag::WheelLift { wheel: Wheel::FrontLeft, time_s: 0.3 };
+        let english = NumberFormat::english(UnitSystem::Si);
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        for (role, word, said) in [
+            (
+                Role::Struck,
+                "struck",
+                ["struck vehicle: the front left", "Gestoßenes Fahrzeug: Das"],
+            ),
+            (
+                Role::Striking,
+                "striking",
+                ["striking vehicle: the front left", "Stoßendes Fahrzeug: Das"],
+            ),
+        ] {
+            let flag = FlagReport::of_vehicle(role, &lift);
+            assert_eq!(serde_json::to_value(&flag).unwrap()["vehicle"], word);
+            for (format, said) in [english, german].iter().zip(said) {
+                let text = flag.caveat.text_in(format, &str::to_owned).unwrap();
+                assert!(text.starts_with(said), "{text}");
+            }
+            // Its numbers are those of a vehicle alone.
+            let alone = FlagReport::from(&lift);
+            assert_eq!((flag.time_s, &flag.wheel), (alone.time_s, &alone.wheel));
+            assert_eq!(flag.caveat.value, alone.caveat.value);
+            assert_eq!(alone.vehicle, None);
+        }
     }
 
     /// “at 1.20 s (90 %: 1.20 to 1.20)” was said of one draw of 60.

@@ -154,8 +154,10 @@ fn compared(
     let [struck, striking] = [error(0)?, error(1)?];
     let turn_rad =
         largest_yaw_change_rad(&case.motions[0]).map_err(|error| of_case(case, &error))?;
-    let flags = motion.motions.iter().flat_map(|motion| &motion.flags);
-    let flags = flags.map(FlagReport::from).collect();
+    let of_vehicle = |(role, motion): (Role, &Motion)| -> Vec<FlagReport> {
+        motion.flags.iter().map(|flag| FlagReport::of_vehicle(role, flag)).collect()
+    };
+    let flags = Role::ALL.into_iter().zip(&motion.motions).flat_map(of_vehicle).collect();
     let end_s = case.motions[0].time_s().last().copied().unwrap_or(0.0);
     let motions = motion.motions.clone();
     let simulated = PairDraw::from_motion(0, motion);

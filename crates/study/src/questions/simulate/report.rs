@@ -10,7 +10,7 @@ use crate::{
     FlagReport, ImpulseRival, MomentumReport, MotionSource, SimulateRequest, SkidReport,
     TireMarkReport, VehicleUncertainty, word,
 };
-use impactlab_core::collision::PrincipalDirectionOfForce;
+use impactlab_core::collision::{PrincipalDirectionOfForce, Role};
 use impactlab_core::compare::{MotionError, largest_yaw_change_rad};
 use impactlab_core::data::{
     Channel, ForceAxes, ForceHistory, SeriesError, TimeSeries, contact_interval,
@@ -94,7 +94,7 @@ pub struct SimulateReport {
     /// The vehicles of a scenario before skids that end at the first contact.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub skids: Vec<SkidReport>,
-    /// Wheel lift, roll beyond the limit, a second contact.
+    /// Wheel lift and roll beyond the limit of the struck and of the striking vehicle, a second contact.
     pub flags: Vec<FlagReport>,
 }
 
@@ -210,13 +210,23 @@ impl SimulateReport {
             error: analysis.error.clone(),
             uncertainty: None,
             contacts: told(&analysis.phases).into_iter().map(ContactPhaseReport::from).collect(),
-            flags: motion
-                .iter()
-                .flat_map(|motion| motion.flags.iter().map(FlagReport::from))
-                .chain(analysis.second_contact.iter().map(FlagReport::from))
-                .collect(),
+            flags: flags(analysis),
         })
     }
+}
+
+/// What is flagged in the motions; where there are two vehicles, each flag says whose it is.
+fn flags(analysis: &Analysis) -> Vec<FlagReport> {
+    let struck = analysis.simulation.iter().flat_map(|motion| &motion.flags);
+    let second = analysis.second_contact.iter().map(FlagReport::from);
+    let Some(track) = &analysis.striking else {
+        return struck.map(FlagReport::from).chain(second).collect();
+    };
+    let struck = struck.map(|flag| FlagReport::of_vehicle(Role::Struck, flag));
+    // A wall or a pole has no wheels that could lift.
+    let striking = track.flags.iter().filter(|_| track.start.vehicle.fixed.is_none());
+    let striking = striking.map(|flag| FlagReport::of_vehicle(Role::Striking, flag));
+    struck.chain(second).chain(striking).collect()
 }
 
 impl ForceReport {
