@@ -38,19 +38,19 @@ const SMALL_STEER_RAD: f64 = 0.0524;
 /// Draws the choices of an ending with their numbers. A vehicle for which nothing is chosen coasts; who takes
 /// a choice back says so.
 ///
-/// - `vehicle`: whose wheels they are.
+/// - `whose`: from when on and whose wheels they are: “After the impact: the struck vehicle”.
 /// - `steering_ratio`: with one, steer angles are those of the steering wheel.
 pub(super) fn ending_form(
     ui: &mut Ui,
-    vehicle: &str,
+    whose: &str,
     ending: &mut Option<Ending>,
     steering_ratio: &mut Option<f64>,
     units: UnitSystem,
 ) {
-    let title = format!("After the impact: the {vehicle} {}", ending_in_words(ending.as_ref()));
-    CollapsingHeader::new(title).id_salt(("ending", vehicle)).show(ui, |ui| {
+    let title = format!("{whose} {}", ending_in_words(ending.as_ref()));
+    CollapsingHeader::new(title).id_salt(("ending", whose)).show(ui, |ui| {
         let mut edited = ending.clone().unwrap_or_default();
-        Grid::new(("ending", vehicle)).num_columns(2).show(ui, |ui| {
+        Grid::new(("ending", whose)).num_columns(2).show(ui, |ui| {
             brake_fields(ui, &mut edited.brake, units);
             engine_fields(ui, &mut edited.engine, units);
             drive_fields(ui, &mut edited.drive, units);
@@ -326,7 +326,8 @@ mod tests {
         };
         let mut harness = Harness::builder().with_size([600.0, 900.0]).build_ui_state(
             |ui, ending: &mut Option<Ending>| {
-                ending_form(ui, "struck vehicle", ending, &mut None, UnitSystem::Si);
+                let whose = "After the impact: the struck vehicle";
+                ending_form(ui, whose, ending, &mut None, UnitSystem::Si);
             },
             Some(asked.clone()),
         );
@@ -354,7 +355,8 @@ mod tests {
         let braking = Ending { brake: Some(hard_braking()), ..Ending::default() };
         let mut harness = Harness::builder().with_size([600.0, 900.0]).build_ui_state(
             |ui, ending: &mut Option<Ending>| {
-                ending_form(ui, "struck vehicle", ending, &mut None, UnitSystem::Si);
+                let whose = "After the impact: the struck vehicle";
+                ending_form(ui, whose, ending, &mut None, UnitSystem::Si);
             },
             Some(braking),
         );

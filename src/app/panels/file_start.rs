@@ -17,7 +17,10 @@ use impactlab_core::data::FileKind;
 use impactlab_core::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
 use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
-use impactlab_study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S, Drive, SeriesFile};
+use impactlab_study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S, Drive, MotionSource, SeriesFile};
+
+/// Whose ending is edited, where a force acts.
+const OF_STRUCK: &str = "After the impact: the struck vehicle";
 
 /// Draws speed, contact point, files of steering and torques, and what happens after the impact.
 pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -36,8 +39,17 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ui.strong("For single files and cases of a force");
     let takes_ending = project.subject().is_some_and(|of| of.takes_ending(&session.sources));
     let Project { simulate, beside, .. } = &mut **project;
+    let whose = if takes_ending { whose_ending(&simulate.source) } else { OF_STRUCK };
     let ending = if takes_ending { &mut simulate.ending } else { &mut beside.ending };
-    ending_form(ui, "struck vehicle", ending, &mut beside.steering_ratio, view.units);
+    ending_form(ui, whose, ending, &mut beside.steering_ratio, view.units);
+}
+
+/// Whose ending is edited, and from when on: a vehicle on which no force acts was not struck.
+fn whose_ending(source: &MotionSource) -> &'static str {
+    match source {
+        MotionSource::Drive(drive) if drive.force.is_none() => "From the start: the vehicle",
+        _ => OF_STRUCK,
+    }
 }
 
 /// The velocity with which the car of an open force of a finite-element run begins, m/s.
@@ -232,6 +244,20 @@ mod tests {
     fn the_assumed_contact_is_told_as_one_says_where_something_is() {
         let told = contact_in_words(&ASSUMED_CONTACT, UnitSystem::Si);
         assert_eq!(told, "1.5 m behind the CG, 0.9 m to the right, 0.52 m above the ground");
+    }
+
+    /// A car that steers along a file was a struck vehicle after an impact.
+    #[test]
+    fn a_vehicle_on_which_no_force_acts_was_not_struck() {
+        for (kind, whose) in [
+            (FileKind::Force, OF_STRUCK),
+            (FileKind::Steer, "From the start: the vehicle"),
+            (FileKind::Wheels, "From the start: the vehicle"),
+        ] {
+            let file = SeriesFile::new("log.csv");
+            let source = MotionSource::from_file(file, kind, Drive::default());
+            assert_eq!(whose_ending(&source), whose, "{kind:?}");
+        }
     }
 
     #[test]

@@ -100,7 +100,8 @@ fn forms_ui(
     contact_form(ui, &mut scenario.contact, pulse, units);
     let Scenario { ending, striking_ending, .. } = scenario;
     for (role, ending) in Role::ALL.into_iter().zip([ending, striking_ending]) {
-        ending_form(ui, role.label(), ending, &mut beside.steering_ratio, units);
+        let whose = format!("After the impact: the {}", role.label());
+        ending_form(ui, &whose, ending, &mut beside.steering_ratio, units);
     }
     slope_form(ui, &mut scenario.road, units);
 }
