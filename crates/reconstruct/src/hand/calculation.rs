@@ -6,8 +6,10 @@
 //!
 //! The intervals come from draws: each input is normal about its value with its standard deviation, cut off at
 //! the limits of its range, and independent of the others; points of a mark are normal in X and in Y. Inputs
-//! whose standard deviation is that of one rule, such as the drag factors of several surfaces, are off together.
-//! Inputs whose standard deviation is 0 are exact. The draws follow from the seed alone.
+//! whose standard deviation is that of one rule, such as the drag factors of several surfaces, are off together:
+//! all too large or all too small. Where that makes errors of an output cancel, as of speeds after an impact whose
+//! courses part, they are independent there: each output has the wider of both intervals. Inputs whose standard
+//! deviation is 0 are exact. The draws follow from the seed alone.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +23,7 @@ use impactlab_core::numerics::{
     TruncatedNormal, normal_quantile, quantile_of_sorted, random_stream,
 };
 use impactlab_core::ranges::HAND_COORDINATE;
-use impactlab_core::units::{Estimate, Phrase};
+use impactlab_core::units::{Estimate, Interval, Phrase};
 
 /// Levels of the intervals.
 const LEVELS: [f64; 3] = [0.5, 0.9, 0.95];
@@ -78,6 +80,26 @@ impl HandNumber {
     }
 }
 
+/// How the inputs of one rule are off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum OfRule {
+    /// All of them too large or too small by the same probability.
+    Together,
+    /// Each by itself.
+    Apart,
+}
+
+/// An input that is drawn.
+struct Drawn {
+    /// Where it stands among the fields of the method.
+    idx: usize,
+    distribution: TruncatedNormal,
+    /// The first of its rule among those that are drawn; itself without a rule.
+    first: usize,
+    /// Whether it has the other sign than that one, so that it is too low where that one is too high.
+    is_mirrored: bool,
+}
+
 /// A number that a method gives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HandQuantity {
@@ -102,8 +124,8 @@ pub struct HandSensitivity {
     pub step: f64,
     /// Whether it is exact, so that the step is none of its errors.
     pub is_exact: bool,
-    /// The rule by which it is off together with others, if it is.
-    pub rule: Option<&'static str>,
+    /// The rule by which it is off together with others, if it is, and whether its value is negative.
+    pub rule: Option<(&'static str, bool)>,
     /// Change of each output, SI; of points the standard deviation that they bring.
     pub changes: Vec<Option<f64>>,
 }
@@ -254,8 +276,12 @@ impl HandQuestion<'_> {
             return Err(unsolved(100.0));
         }
         let sensitivities = self.sensitivities(&numbers, &table);
-        let drawn = self.drawn(&numbers, &table, (draws, seed));
-        let n_unsolved = draws - drawn.len();
+        let drawn = self.drawn(&numbers, &table, (draws, seed), OfRule::Together);
+        let has_rule = numbers.iter().any(|number| number.rule().is_some());
+        let apart = has_rule.then(|| self.drawn(&numbers, &table, (draws, seed), OfRule::Apart));
+        let sets: Vec<&Vec<Vec<f64>>> = [&drawn].into_iter().chain(&apart).collect();
+        let n_solved = sets.iter().map(|set| set.len()).min().unwrap_or(0);
+        let n_unsolved = draws - n_solved;
         if n_unsolved as f64 > LARGEST_UNSOLVED_SHARE * draws as f64 {
             return Err(unsolved(100.0 * n_unsolved as f64 / draws as f64));
         }
@@ -266,7 +292,7 @@ impl HandQuestion<'_> {
         let quantities = quantities
             .filter_map(|(idx, (output, &value))| {
                 let sigma = first_order(&sensitivities, idx);
-                let all = estimate(&drawn, idx)?;
+                let all = widest(&sets, idx)?;
                 let estimate = if is_exact { all.without_intervals() } else { all };
                 Some(HandQuantity { output, value, sigma, estimate })
             })
@@ -276,8 +302,9 @@ impl HandQuestion<'_> {
             .filter(|idx| outputs.get(*idx).is_some_and(|value| value.is_finite()))
             .map(|idx| share_of(&drawn, |outputs| outputs.get(idx).is_some_and(|m| *m >= 0.0)));
         let violated = (formula.warn)(&at, &outputs);
+        let in_draws = sets.iter().filter_map(|set| formula.violated_in_draws(&at, set));
         let violated_in_draws =
-            formula.violated_in_draws(&at, &drawn).filter(|_| violated.is_empty());
+            in_draws.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|_| violated.is_empty());
         Ok(HandAnswer {
             numbers,
             quantities,
@@ -320,7 +347,7 @@ impl HandQuestion<'_> {
             let points = self.points_m;
             let changes = change(&self.values(&low, points), &self.values(&high, points));
             let (input, label) = (field.si_key(), field.label);
-            let rule = number.rule();
+            let rule = number.rule().map(|rule| (rule, number.value < 0.0));
             (step > 0.0).then_some(HandSensitivity { input, label, step, is_exact, rule, changes })
         };
         let moves = numbers.iter().filter(|number| number.field.key != POINT_ERROR);
@@ -361,38 +388,46 @@ impl HandQuestion<'_> {
         Some(HandSensitivity { input, label, step, is_exact: false, rule: None, changes })
     }
 
-    /// The outputs of each draw from which the first one follows.
+    /// The inputs that are not exact.
+    fn varied(&self, numbers: &[HandNumber]) -> Vec<Drawn> {
+        let fields = self.method.fields();
+        let varied: Vec<&HandNumber> = numbers.iter().filter(|number| number.sigma > 0.0).collect();
+        let drawn = varied.iter().enumerate().filter_map(|(own, number)| {
+            let idx = fields.iter().position(|field| field.key == number.field.key)?;
+            let of_rule = varied.iter().position(|of| of.rule() == number.rule());
+            let first = number.rule().and(of_rule).unwrap_or(own);
+            let is_mirrored = (number.value < 0.0) != (varied[first].value < 0.0);
+            Some(Drawn { idx, distribution: number.distribution(), first, is_mirrored })
+        });
+        drawn.collect()
+    }
+
+    /// The outputs of each draw from which the first one follows. Inputs that are of no rule are the same in both
+    /// kinds of draws.
     fn drawn(
         &self,
         numbers: &[HandNumber],
         table: &[Option<f64>],
         (draws, seed): (usize, u64),
+        of_rule: OfRule,
     ) -> Vec<Vec<f64>> {
         let solve = self.method.formula().solve;
-        let fields = self.method.fields();
-        let varied: Vec<&HandNumber> = numbers.iter().filter(|number| number.sigma > 0.0).collect();
-        let varied: Vec<(usize, TruncatedNormal, usize)> = varied
-            .iter()
-            .enumerate()
-            .filter_map(|(own, number)| {
-                let idx = fields.iter().position(|field| field.key == number.field.key)?;
-                let first = varied.iter().position(|of| of.rule() == number.rule());
-                Some((idx, number.distribution(), number.rule().and(first).unwrap_or(own)))
-            })
-            .collect();
+        let varied = self.varied(numbers);
         let mut probabilities = vec![0.0; varied.len()];
         let point_error = self.point_error(table);
-        let mut rng = random_stream(seed, "hand", 0);
+        let [mut rng, mut rng_apart] = [0, 1].map(|number| random_stream(seed, "hand", number));
         let (mut numbers, mut points) = (table.to_vec(), self.points_m.to_vec());
         let mut outputs = Vec::with_capacity(draws);
         for _ in 0..draws {
-            for (own, (idx, distribution, first)) in varied.iter().enumerate() {
-                // One that is off together with an earlier one has its probability.
-                let is_own = *first == own;
-                probabilities[own] =
-                    if is_own { rng.random::<f64>() } else { probabilities[*first] };
-                if let Some(entry) = numbers.get_mut(*idx) {
-                    *entry = Some(distribution.quantile(probabilities[own]));
+            for (own, input) in varied.iter().enumerate() {
+                probabilities[own] = match of_rule {
+                    _ if input.first == own => rng.random::<f64>(),
+                    OfRule::Apart => rng_apart.random::<f64>(),
+                    OfRule::Together if input.is_mirrored => 1.0 - probabilities[input.first],
+                    OfRule::Together => probabilities[input.first],
+                };
+                if let Some(entry) = numbers.get_mut(input.idx) {
+                    *entry = Some(input.distribution.quantile(probabilities[own]));
                 }
             }
             if point_error > 0.0 {
@@ -409,17 +444,23 @@ impl HandQuestion<'_> {
     }
 }
 
-/// Standard deviation of an output to first order; `None` if an input moves it to where it is none.
+/// Standard deviation of an output to first order; `None` if an input moves it to where it is none. Inputs of
+/// one rule are off together or independent, whichever moves it more.
 fn first_order(sensitivities: &[HandSensitivity], idx: usize) -> Option<f64> {
-    let (mut squares, mut of_rules) = (0.0, BTreeMap::<&str, f64>::new());
+    let (mut squares, mut of_rules) = (0.0, BTreeMap::<&str, [f64; 2]>::new());
     for of in sensitivities.iter().filter(|of| !of.is_exact) {
         let change = of.changes.get(idx).copied().flatten()?;
         match of.rule {
-            Some(rule) => *of_rules.entry(rule).or_default() += change,
+            Some((rule, is_negative)) => {
+                let [together, apart] = of_rules.entry(rule).or_default();
+                *together += if is_negative { -change } else { change };
+                *apart += change * change;
+            }
             None => squares += change * change,
         }
     }
-    squares += of_rules.values().map(|change| change * change).sum::<f64>();
+    squares +=
+        of_rules.values().map(|[together, apart]| (together * together).max(*apart)).sum::<f64>();
     Some(squares.sqrt())
 }
 
@@ -429,6 +470,14 @@ fn estimate(drawn: &[Vec<f64>], idx: usize) -> Option<Estimate> {
     let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     Estimate::from_quantiles(&LEVELS, |probability| quantile_of_sorted(&values, probability))
+}
+
+/// Of several sets of draws the estimate with the widest interval, of equal ones the first; `None` if none has
+/// the output.
+fn widest(sets: &[&Vec<Vec<f64>>], idx: usize) -> Option<Estimate> {
+    let width = |of: &Estimate| of.intervals.last().map_or(0.0, Interval::width);
+    let estimates = sets.iter().filter_map(|set| estimate(set, idx));
+    estimates.reduce(|widest, of| if width(&of) > width(&widest) { of } else { widest })
 }
 
 fn share_of(drawn: &[Vec<f64>], holds: impl Fn(&[f64]) -> bool) -> f64 {

@@ -312,7 +312,8 @@ fn caveats(answer: &HandAnswer, draws: usize, bias: Option<&YawMarkBias>) -> Cav
     all.into_iter().collect()
 }
 
-/// That inputs whose standard deviations stand in one rule are off together, if there are several.
+/// That inputs whose standard deviations stand in one rule are off together where that is wider, if there are
+/// several.
 fn off_together(numbers: &[HandNumber]) -> Option<Caveat> {
     let of_rule = numbers.iter().filter(|number| number.rule().is_some() && number.sigma > 0.0);
     let labels: Vec<Phrase> = of_rule
@@ -320,10 +321,11 @@ fn off_together(numbers: &[HandNumber]) -> Option<Caveat> {
         .collect();
     (labels.len() > 1).then(|| {
         let phrase = Phrase::new(
-            "no standard deviation is stated of these; one rule of the program stands for all of them, so that \
-             they are too high or too low together: {0}",
-            "Die nicht angegebenen Standardabweichungen folgen hier einer gemeinsamen Regel; gemeinsam zu groß \
-             oder zu klein gezogen werden: {0}",
+            "no standard deviation is stated of these, and one rule of the program stands for all of them; their \
+             errors are drawn together or independently, whichever gives a result the wider interval: {0}",
+            "Für diese Eingaben ist keine Standardabweichung angegeben, und für alle gilt eine Regel des \
+             Programms; ihre Fehler sind gemeinsam oder unabhängig voneinander gezogen, je nachdem, was den \
+             breiteren Bereich eines Ergebnisses ergibt: {0}",
         )
         .with(PhraseValue::phrase(Phrase::joined(labels, "; ")));
         Caveat::new(CaveatKind::Note, phrase)

@@ -82,6 +82,26 @@ fn in_line(sigma_m_s: f64) -> Answer<HandReport> {
     answer(&request(HandMethod::MomentumInLine, &inputs))
 }
 
+#[test]
+fn speeds_after_an_impact_without_a_stated_error_are_off_together() {
+    let told = |sigma: Option<f64>| {
+        let asked = request(
+            HandMethod::MomentumInLine,
+            &[
+                ("mass_1_kg", 1500.0, None),
+                ("mass_2_kg", 1200.0, None),
+                ("speed_after_1_m_s", 8.0, None),
+                ("speed_after_2_m_s", 9.0, sigma),
+                ("speed_2_m_s", 0.0, None),
+            ],
+        );
+        let caveats = answer(&asked).caveats;
+        caveats.iter().any(|it| it.text.contains("drawn together or independently"))
+    };
+    assert!(told(None));
+    assert!(!told(Some(0.9)));
+}
+
 /// A restitution of -0.09 to 0.23 was told without a word: a quarter of the draws has vehicle 1 drive
 /// through the other one.
 #[test]
