@@ -297,7 +297,7 @@ fn caveats(answer: &HandAnswer, draws: usize, bias: Option<&YawMarkBias>) -> Cav
         all.push(Caveat::new(CaveatKind::NoInterval, phrase));
     }
     all.extend(bias.and_then(bias_caveat));
-    all.extend((answer.n_unsolved > 0).then(|| left_out(answer.n_unsolved, draws)));
+    all.extend((answer.n_unsolved > 0).then(|| left_out(answer, draws)));
     all.extend(answer.numbers.iter().filter(|of| of.is_value_assumed).map(assumed_value));
     let is_assumed =
         |of: &&HandNumber| of.is_sigma_assumed && !of.is_value_assumed && of.sigma > 0.0;
@@ -345,13 +345,25 @@ fn violated_in_draws((share, said): &(f64, Phrase)) -> Caveat {
     Caveat::new(CaveatKind::OutsideDomain, phrase)
 }
 
-fn left_out(n_unsolved: usize, draws: usize) -> Caveat {
-    let phrase = Phrase::new(
-        "nothing follows from {0} of {1} draws of the inputs, which are left out",
-        "Aus {0} von {1} Ziehungen der Eingaben folgt nichts; sie sind ausgelassen",
-    );
+/// Draws without an answer, and what they do to the intervals.
+fn left_out(answer: &HandAnswer, draws: usize) -> Caveat {
+    let has_all = answer.quantities.iter().all(|of| of.estimate.interval(0.95).is_some());
+    let phrase = match has_all {
+        true => Phrase::new(
+            "nothing follows from {0} of {1} draws of the inputs, which are left out; the intervals are widened by \
+             as many at either end",
+            "Aus {0} von {1} Ziehungen der Eingaben folgt nichts; sie sind ausgelassen, und die Bereiche sind an \
+             beiden Enden um ebenso viele erweitert",
+        ),
+        false => Phrase::new(
+            "nothing follows from {0} of {1} draws of the inputs, which are left out; the intervals are widened by \
+             as many at either end, and there is none of 95 %",
+            "Aus {0} von {1} Ziehungen der Eingaben folgt nichts; sie sind ausgelassen, die Bereiche sind an beiden \
+             Enden um ebenso viele erweitert, und einen von 95 % gibt es nicht",
+        ),
+    };
     let count = |n: usize| PhraseValue::Name(n.to_string());
-    Caveat::new(CaveatKind::LeftOut, phrase.with(count(n_unsolved)).with(count(draws)))
+    Caveat::new(CaveatKind::LeftOut, phrase.with(count(answer.n_unsolved)).with(count(draws)))
 }
 
 fn assumed_value(number: &HandNumber) -> Caveat {
