@@ -11,28 +11,22 @@
 //! courses part, they are independent there: each output has the wider of both intervals. Inputs whose standard
 //! deviation is 0 are exact. The draws follow from the seed alone.
 
-use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
 use rand::RngExt as _;
 
 use crate::evidence::Stated;
 use crate::hand::field::POINTS;
+use crate::hand::spread::{first_order, share_of, widest};
 use crate::hand::values::HandValues;
 use crate::hand::{HandDefault, HandError, HandField, HandMethod, HandOutput};
-use impactlab_core::numerics::{
-    TruncatedNormal, normal_quantile, quantile_of_sorted, random_stream,
-};
+use impactlab_core::numerics::{TruncatedNormal, normal_quantile, random_stream};
 use impactlab_core::ranges::HAND_COORDINATE;
-use impactlab_core::units::{Estimate, Interval, Phrase};
+use impactlab_core::units::{Estimate, Phrase};
 
-/// Levels of the intervals.
-const LEVELS: [f64; 3] = [0.5, 0.9, 0.95];
 /// Share of draws without an answer beyond which there is none: they are left out on one side of the others, so
 /// that with more of them no interval of 90 % has known ends.
 const LARGEST_UNSOLVED_SHARE: f64 = 0.05;
-/// Rounding of a share.
-const ROUNDING: f64 = 1e-9;
 /// Most points of a mark.
 const MOST_POINTS: usize = 500;
 /// Change of an input that is exact by which the others are compared, as a share of its value.
@@ -445,59 +439,6 @@ impl HandQuestion<'_> {
         outputs.retain(|of: &Vec<f64>| of.first().is_some_and(|value| value.is_finite()));
         outputs
     }
-}
-
-/// Standard deviation of an output to first order; `None` if an input moves it to where it is none. Inputs of
-/// one rule are off together or independent, whichever moves it more.
-fn first_order(sensitivities: &[HandSensitivity], idx: usize) -> Option<f64> {
-    let (mut squares, mut of_rules) = (0.0, BTreeMap::<&str, [f64; 2]>::new());
-    for of in sensitivities.iter().filter(|of| !of.is_exact) {
-        let change = of.changes.get(idx).copied().flatten()?;
-        match of.rule {
-            Some((rule, is_negative)) => {
-                let [together, apart] = of_rules.entry(rule).or_default();
-                *together += if is_negative { -change } else { change };
-                *apart += change * change;
-            }
-            None => squares += change * change,
-        }
-    }
-    squares +=
-        of_rules.values().map(|[together, apart]| (together * together).max(*apart)).sum::<f64>();
-    Some(squares.sqrt())
-}
-
-/// Median and intervals of an output over the draws; `None` if no draw has it. Draws that do not have it may lie
-/// beyond either end: an interval leaves out fewer of the others by as many, and there is none of a level that
-/// leaves out fewer than these.
-fn estimate(drawn: &[Vec<f64>], idx: usize, draws: usize) -> Option<Estimate> {
-    let values = drawn.iter().filter_map(|outputs| outputs.get(idx).copied());
-    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    let left_out = 1.0 - values.len() as f64 / draws as f64;
-    let has_ends = |level: &f64| (1.0 - level) / 2.0 > left_out - ROUNDING;
-    let levels: Vec<f64> = LEVELS.into_iter().filter(has_ends).collect();
-    let beyond = |share: f64| ((share - left_out) / (1.0 - left_out)).max(0.0);
-    Estimate::from_quantiles(&levels, |probability| {
-        let of_values = match probability.total_cmp(&0.5) {
-            Ordering::Less => beyond(probability),
-            Ordering::Equal => probability,
-            Ordering::Greater => 1.0 - beyond(1.0 - probability),
-        };
-        quantile_of_sorted(&values, of_values)
-    })
-}
-
-/// Of several sets of draws the estimate with the widest interval, of equal ones the first; `None` if none has
-/// the output.
-fn widest(sets: &[&Vec<Vec<f64>>], idx: usize, draws: usize) -> Option<Estimate> {
-    let width = |of: &Estimate| of.intervals.last().map_or(0.0, Interval::width);
-    let estimates = sets.iter().filter_map(|set| estimate(set, idx, draws));
-    estimates.reduce(|widest, of| if width(&of) > width(&widest) { of } else { widest })
-}
-
-fn share_of(drawn: &[Vec<f64>], holds: impl Fn(&[f64]) -> bool) -> f64 {
-    drawn.iter().filter(|outputs| holds(outputs)).count() as f64 / drawn.len().max(1) as f64
 }
 
 #[cfg(test)]

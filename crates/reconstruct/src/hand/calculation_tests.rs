@@ -102,32 +102,6 @@ fn draws_without_an_answer_are_not_left_out_in_silence() {
     assert!((50..250).contains(&n_unsolved), "{n_unsolved} of 5000, expected 2.3 %");
 }
 
-/// Draws that are left out are those of one end, and an interval of 95 % of the others held some 92 % of all.
-#[test]
-fn an_interval_holds_its_share_of_all_draws_wherever_those_lie_that_are_left_out() {
-    let drawn = |n: u32| (0..n).map(|i| vec![f64::from(i)]).collect::<Vec<_>>();
-    // Of 1000 draws 0 to 999 those above have no answer.
-    for (n, levels) in [
-        (1000, &[0.5, 0.9, 0.95][..]),
-        (990, &[0.5, 0.9, 0.95]),
-        (975, &[0.5, 0.9, 0.95]),
-        (970, &[0.5, 0.9]),
-        (950, &[0.5, 0.9]),
-        (700, &[]),
-    ] {
-        let found = estimate(&drawn(n), 0, 1000).unwrap();
-        let has: Vec<f64> = found.intervals.iter().map(|of| of.level).collect();
-        assert_eq!(has, levels, "{n}");
-        for of in &found.intervals {
-            let beyond = 500.0 * (1.0 - of.level);
-            let above = 999.0 - of.high;
-            assert!((above - beyond).abs() < 1.0, "{n}: {of:?}, {above} above");
-            assert!(of.low <= beyond, "{n}: {of:?}");
-        }
-        assert!((found.median - f64::from(n - 1) / 2.0).abs() < 1e-9, "{n}: {}", found.median);
-    }
-}
-
 /// A normal braking distance about the distance that there is: half of the draws stop in time.
 #[test]
 fn chances_to_stop_are_those_of_the_draws() {

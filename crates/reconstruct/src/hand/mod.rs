@@ -16,6 +16,7 @@ mod field;
 mod method;
 mod momentum;
 mod slide;
+mod spread;
 mod time_distance;
 mod values;
 mod yaw_bias;
