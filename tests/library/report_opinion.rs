@@ -195,6 +195,35 @@ fn the_condition_of_a_calculation_by_hand_is_a_sentence() {
     assert!(answers.blocks.iter().any(is_sentence), "{:?}", answers.blocks);
 }
 
+/// What each section says in paragraphs.
+fn paragraphs(document: &ReportDocument, kind: SectionKind) -> String {
+    let section = document.section(kind).expect("a section");
+    let texts = section.blocks.iter().filter_map(|block| match block {
+        Block::Paragraph { text } => Some(text.as_str()),
+        _ => None,
+    });
+    texts.collect::<Vec<_>>().join(" ")
+}
+
+/// The axes of reconstructions stood in section 5, and sections 6 and 7 told of models of which there are none.
+#[test]
+fn the_annex_of_a_calculation_by_hand_tells_of_no_models() {
+    let (document, _) = report(&by_hand(), &english());
+    for (kind, part) in [
+        (SectionKind::Method, "its sources stand in section 1"),
+        (SectionKind::Validity, "holds stands in section 1. Each restriction"),
+        (SectionKind::Validation, "exercises whose answers are published"),
+    ] {
+        let told = paragraphs(&document, kind);
+        assert!(told.contains(part), "{told}");
+        for wrong in ["Axes are those", "models of the opinion", "answered by a model"] {
+            assert!(!told.contains(wrong), "{wrong}: {told}");
+        }
+    }
+    let (document, _) = pit();
+    assert!(paragraphs(document, SectionKind::Method).contains("Axes are those of ISO 8855"));
+}
+
 /// Readers by ear get the file that they need: PDF/UA-1, with a title and headers of rows.
 #[test]
 fn the_pdf_says_that_it_can_be_read_by_ear() {

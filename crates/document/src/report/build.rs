@@ -11,7 +11,7 @@ use crate::report::holders::AnswerNames;
 use crate::report::input_table::input_tables;
 use crate::report::method::{Method, method_blocks};
 use crate::report::numbers::{Wording, fill};
-use crate::report::opinion::{Asked, considered_methods, opinion_blocks};
+use crate::report::opinion::{Asked, are_by_hand, considered_methods, opinion_blocks};
 use crate::report::parts::{InputRow, Part, PartProvenance};
 use crate::report::paths::ShownPaths;
 use crate::report::picture_blocks::picture_blocks;
@@ -98,6 +98,9 @@ impl Builder<'_> {
             SectionKind::Inputs => self.inputs(variants),
             SectionKind::Evidence => {
                 or(distinct(variants, |part| &part.evidence), words.no_evidence)
+            }
+            SectionKind::Method if are_by_hand(variants) => {
+                vec![Block::paragraph(words.method_by_hand)]
             }
             SectionKind::Method => {
                 or(method_blocks(&methods(variants), self.wording), words.no_methods)
@@ -199,6 +202,9 @@ impl Builder<'_> {
 
     fn validation(&self, variants: &[VariantParts]) -> Vec<Block> {
         let words = self.wording.words;
+        if are_by_hand(variants) {
+            return vec![Block::paragraph(words.validation_by_hand)];
+        }
         let (methods, opinion) = (methods(variants), considered_methods(variants));
         let mut blocks: Vec<Block> = Vec::new();
         // Those without tables stand together at the end.

@@ -7,7 +7,7 @@ use crate::report::build::{VariantParts, parts_of};
 use crate::report::holders::AnswerNames;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
-use crate::report::opinion::considered_methods;
+use crate::report::opinion::{are_by_hand, considered_methods};
 use crate::report::parts::Part;
 use crate::report::{Block, Table};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatQuantity};
@@ -24,7 +24,8 @@ pub(super) fn validity_blocks(
     wording: &Wording,
 ) -> Vec<Block> {
     let words = wording.words;
-    let mut blocks = vec![Block::paragraph(words.validity_text)];
+    let text = if are_by_hand(variants) { words.validity_by_hand } else { words.validity_text };
+    let mut blocks = vec![Block::paragraph(text)];
     let considered = considered_methods(variants);
     let others = methods.difference(&considered);
     let limits = others.map(|it| format!("{}: {}", it.name(wording), it.limits(wording)));

@@ -230,6 +230,8 @@ pub(super) const WORDS: Words = Words {
     inputs_left: "Bei den Vorgaben des Programms belassen: {values}.",
     validity_text: "Was die Modelle des Gutachtens vernachlässigen, steht dort. Es folgt jede Einschränkung, \
         die das Programm gefunden hat, mit Begründung und Abhilfe.",
+    validity_by_hand: "Die Voraussetzung jeder Rechnung von Hand steht in Abschnitt 1. Es folgt jede Einschränkung, die das \
+        Programm gefunden hat, mit Begründung und Abhilfe.",
     validity_models: "Die übrigen Modelle vernachlässigen:",
     badges_caption: "Einschränkungen der Antworten",
     restriction: "Einschränkung",
@@ -413,6 +415,10 @@ pub(super) const WORDS: Words = Words {
     validation_sheet: "Die Regeln tragen die Streuung der Fahrzeuge, aus denen sie stammen; sie steht bei jedem \
         Schätzwert.",
     no_methods: "Keine Antwort stammt aus einem Modell.",
+    method_by_hand: "Die Gleichung jeder Rechnung von Hand, ihre Voraussetzung und ihre Quellen stehen in Abschnitt 1. \
+        Intervalle lassen unten so viel weg wie oben.",
+    validation_by_hand: "Die Tests des Programms vergleichen die Gleichungen mit Aufgaben, deren Lösungen veröffentlicht sind. \
+        Wie oft die Bereiche solcher Rechnungen zutrafen, wurde nicht gezählt.",
     no_sensitivity: "Keine Antwort dieses Falls enthält ein Maß dafür, wovon sie abhängt: es wird nichts \
         gezogen, oder nichts Gezogenes bewegt das Ergebnis stärker als der Zufall.",
     provenance_caption: "Antworten",

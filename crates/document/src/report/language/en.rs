@@ -223,6 +223,8 @@ pub(super) const WORDS: Words = Words {
     inputs_left: "Left at the defaults of the program: {values}.",
     validity_text: "What the models of the opinion leave out is said there. Each restriction that the \
         program found follows, with its sentence and a remedy.",
+    validity_by_hand: "The condition under which each calculation by hand holds stands in section 1. Each restriction \
+        that the program found follows, with its sentence and a remedy.",
     validity_models: "The other models leave out:",
     badges_caption: "Restrictions of the answers",
     restriction: "Restriction",
@@ -398,6 +400,10 @@ pub(super) const WORDS: Words = Words {
     validation_sheet: "The rules carry the scatter of the vehicles that they were made from; it is told beside \
         each estimate.",
     no_methods: "Nothing was answered by a model.",
+    method_by_hand: "The equation of each calculation by hand, its condition and its sources stand in section 1. \
+        Intervals leave out as much below as above.",
+    validation_by_hand: "The tests of the program compare the equations with exercises whose answers are published. How \
+        often the intervals of such calculations held was not counted.",
     no_sensitivity: "No answer of this case has a measure of what it depends on: its questions draw nothing, \
         or nothing that they draw moves the result by more than chance.",
     provenance_caption: "Answers",

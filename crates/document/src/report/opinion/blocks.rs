@@ -110,6 +110,14 @@ fn spoken(variants: &[VariantParts]) -> Vec<Spoken<'_>> {
     each.collect()
 }
 
+/// Whether every answer is a calculation by hand, and there is one.
+pub(in crate::report) fn are_by_hand(variants: &[VariantParts]) -> bool {
+    let is_by_hand =
+        |part: &Part| part.opinion.as_ref().is_some_and(|opinion| opinion.rank == Rank::Hand);
+    let mut parts = variants.iter().flat_map(parts_of).peekable();
+    parts.peek().is_some() && parts.all(is_by_hand)
+}
+
 /// By what the answers of the opinion were computed; what these methods leave out is said there.
 pub(in crate::report) fn considered_methods(variants: &[VariantParts]) -> BTreeSet<Method> {
     methods_of(&spoken(variants))
