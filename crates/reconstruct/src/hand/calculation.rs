@@ -332,17 +332,21 @@ impl HandQuestion<'_> {
             let step = if is_exact { EXACT_STEP * number.value.abs() } else { number.sigma };
             let field = number.field;
             let idx = self.method.fields().iter().position(|of| of.key == field.key)?;
-            let moved = |by: f64| {
+            let moved = |value: f64| {
                 let mut moved = table.to_vec();
-                let value = (number.value + by).clamp(field.range.low, field.range.high);
                 if let Some(entry) = moved.get_mut(idx) {
                     *entry = Some(value);
                 }
                 moved
             };
-            let [low, high] = [moved(-step / 2.0), moved(step / 2.0)];
+            let ends = [-step / 2.0, step / 2.0]
+                .map(|by| (number.value + by).clamp(field.range.low, field.range.high));
+            // At the end of its range it moves to one side alone, by half of the step.
+            let per_step = step / (ends[1] - ends[0]);
+            let [low, high] = ends.map(moved);
             let points = self.points_m;
             let changes = change(&self.values(&low, points), &self.values(&high, points));
+            let changes = changes.into_iter().map(|of| of.map(|of| of * per_step)).collect();
             let (input, label) = (field.si_key(), field.label);
             let rule = number.rule().map(|rule| (rule, number.value < 0.0));
             (step > 0.0).then_some(HandSensitivity { input, label, step, is_exact, rule, changes })

@@ -76,6 +76,25 @@ fn the_same_seed_draws_the_same_and_exact_inputs_have_no_interval() {
     assert_eq!(exact.quantities[0].sigma, Some(0.0));
 }
 
+/// With all wheels braked, the end of its range, 1 % less of them and their standard deviation moved a result by
+/// half of what they do.
+#[test]
+fn an_input_at_the_end_of_its_range_moves_a_result_by_its_whole_step() {
+    for (share, sigma) in [(1.0, 0.0), (1.0, 0.15), (0.6, 0.15)] {
+        let mut inputs = skid(stated(30.0, 0.0), stated(0.7, 0.0));
+        inputs.insert("braked_share".to_owned(), stated(share, sigma));
+        let answer = answer(&inputs);
+        let of = answer.sensitivities.iter().find(|of| of.input == "braked_share").unwrap();
+        let step = if sigma > 0.0 { sigma } else { 0.01 };
+        let per_step = 0.7 * 9.806_65 * step;
+        let change = of.changes[1].unwrap();
+        assert!((change / per_step - 1.0).abs() < 1e-9, "{share} ± {sigma}: {change}");
+        let found = answer.quantities[1].sigma.unwrap();
+        let expected = 0.7 * 9.806_65 * sigma;
+        assert!((found - expected).abs() < 1e-9, "{share} ± {sigma}: {found}");
+    }
+}
+
 /// Friction of 0.05 ± 0.2 is cut off at the least friction that a road has.
 #[test]
 fn no_draw_leaves_the_range_of_its_input() {
