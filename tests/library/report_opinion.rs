@@ -220,6 +220,9 @@ fn the_annex_of_a_calculation_by_hand_tells_of_no_models() {
             assert!(!told.contains(wrong), "{wrong}: {told}");
         }
     }
+    // The errors of some inputs are drawn together, of which a note tells.
+    let answers = paragraphs(&document, SectionKind::Answers);
+    assert!(answers.contains("depend on each other no more than the notes say"), "{answers}");
     let (document, _) = pit();
     assert!(paragraphs(document, SectionKind::Method).contains("Axes are those of ISO 8855"));
 }

@@ -154,7 +154,7 @@ pub(super) const WORDS: Words = Words {
     replay_picture: "{quantity} über der Uhr des Datenspeichers: aufgezeichnet und nachgerechnet, mit dem Band von \
                      90 %",
     meaning_hand: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, wenn das Verfahren gilt und die \
-                   Eingaben so unsicher sind wie angegeben und nicht voneinander abhängen.",
+                   Eingaben so unsicher sind wie angegeben und nicht stärker voneinander abhängen, als die Hinweise sagen.",
     meaning_posterior: "Jeder Wert liegt mit dieser Wahrscheinlichkeit in seinem Bereich von 90 %, nach den vorgefundenen Spuren, \
         wenn die Annahmen in Abschnitt 3 und die Verfahren in Abschnitt 5 zutreffen.",
     meaning_doubtful: "Auf diese Intervalle{courses} ist kein Verlass: siehe die Warnungen in Abschnitt 6 ({badges}).",

@@ -148,7 +148,7 @@ pub(super) const WORDS: Words = Words {
     replay_path_picture: "Path up to the first contact from above, with the band of 90 % of the draws across it",
     replay_picture: "{quantity} on the clock of the recorder: recorded and replayed, with the band of 90 %",
     meaning_hand: "Each value lies in its interval of 90 % with that probability if the method holds, the inputs are as \
-                   uncertain as they say, and do not depend on each other.",
+                   uncertain as they say, and depend on each other no more than the notes say.",
     meaning_posterior: "Each value lies in its interval of 90 % with that probability, given the evidence, if the assumptions \
         of section 3 and the models of section 5 hold.",
     meaning_doubtful: "These intervals{courses} are not to be relied on: see the warnings in section 6 ({badges}).",
