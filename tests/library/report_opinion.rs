@@ -152,13 +152,18 @@ fn each_course_of_events_has_its_probability_and_its_speed_in_the_opinion() {
 
 /// A calculation by hand: what vehicle 1 had before it struck one at rest, of 1500 and 1200 kg.
 fn by_hand() -> CaseFile {
-    let stated = |value, sigma| Stated { value: Some(value), sigma: Some(sigma) };
+    by_hand_with(Some(1.0))
+}
+
+/// - `sigma_m_s`: of both speeds after the impact, if it is stated.
+fn by_hand_with(sigma_m_s: Option<f64>) -> CaseFile {
+    let stated = |value, sigma| Stated { value: Some(value), sigma };
     let inputs = [
-        ("mass_1_kg", stated(1500.0, 30.0)),
-        ("mass_2_kg", stated(1200.0, 30.0)),
-        ("speed_after_1_m_s", stated(8.0, 1.0)),
-        ("speed_after_2_m_s", stated(9.0, 1.0)),
-        ("speed_2_m_s", stated(0.0, 0.0)),
+        ("mass_1_kg", stated(1500.0, Some(30.0))),
+        ("mass_2_kg", stated(1200.0, Some(30.0))),
+        ("speed_after_1_m_s", stated(8.0, sigma_m_s)),
+        ("speed_after_2_m_s", stated(9.0, sigma_m_s)),
+        ("speed_2_m_s", stated(0.0, Some(0.0))),
     ];
     let inputs = inputs.map(|(key, stated)| (key.to_owned(), stated)).into_iter().collect();
     let asked = HandRequest { inputs, ..HandRequest::new(HandMethod::MomentumInLine) };
@@ -193,6 +198,24 @@ fn the_condition_of_a_calculation_by_hand_is_a_sentence() {
         _ => false,
     };
     assert!(answers.blocks.iter().any(is_sentence), "{:?}", answers.blocks);
+}
+
+/// The question was named as the source of a standard deviation that it does not state.
+#[test]
+fn a_standard_deviation_of_the_program_has_the_program_as_its_source() {
+    let is_told = |sigma_m_s| {
+        let (document, _) = report(&by_hand_with(sigma_m_s), &english());
+        let inputs = document.section(SectionKind::Inputs).expect("inputs");
+        inputs.blocks.iter().any(|block| match block {
+            Block::Table(table) => {
+                let mut cells = table.rows.iter().flatten();
+                cells.any(|cell| cell.contains("question; ± is that of the program"))
+            }
+            _ => false,
+        })
+    };
+    assert!(is_told(None));
+    assert!(!is_told(Some(1.0)));
 }
 
 /// What each section says in paragraphs.

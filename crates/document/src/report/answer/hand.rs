@@ -41,9 +41,10 @@ pub(super) fn part(answer: &Answer<HandReport>, context: Context<'_>) -> Part {
             (false, true) => InputClass::Given,
             (false, false) => InputClass::Measured,
         },
-        source: match input.is_value_assumed {
-            true => words.source_program.to_owned(),
-            false => words.source_question.to_owned(),
+        source: match (input.is_value_assumed, input.is_sigma_assumed && input.sigma > 0.0) {
+            (true, _) => words.source_program.to_owned(),
+            (false, true) => words.source_question_sigma.to_owned(),
+            (false, false) => words.source_question.to_owned(),
         },
     };
     Part {

@@ -217,6 +217,7 @@ pub(super) const WORDS: Words = Words {
     decision_by_number: "jedes der beiden Räder am Schaden mit einer Wahrscheinlichkeit von {share}, sonst keines",
     source_evidence: "Anknüpfungstatsachen",
     source_question: "Frage",
+    source_question_sigma: "Frage; ± vom Programm, da dort nicht genannt",
     source_file: "Datei, siehe Abschnitt 9",
     follows_from_sheet: "Datenblatt, oder folgt aus den Schätzwerten unten",
     inputs_text: "„Vorgegeben“ ist, was die Frage oder die Anknüpfungstatsachen ohne Standardabweichung nennen, auch \

@@ -209,6 +209,7 @@ pub(super) const WORDS: Words = Words {
     decision_by_number: "each of the two wheels near the damage with a probability of {share}, else none",
     source_evidence: "evidence",
     source_question: "question",
+    source_question_sigma: "question; ± is that of the program, where the question says none",
     source_file: "file, see section 9",
     follows_from_sheet: "data sheet, or follows from the estimates below",
     inputs_text: "“Given” is what the question or the evidence says without a standard deviation, settings \

@@ -160,6 +160,7 @@ pub(in crate::report) struct Words {
     pub decision_by_number: &'static str,
     pub source_evidence: &'static str,
     pub source_question: &'static str,
+    pub source_question_sigma: &'static str,
     pub source_file: &'static str,
     pub follows_from_sheet: &'static str,
     pub inputs_text: &'static str,
