@@ -283,7 +283,7 @@ mod tests {
             [0.0, 4.0, 50.0].map(|time_s| at(time_s, VehicleInput::RELEASED)),
             [1.0, 1.5, 2.5]
         );
-        assert_eq!([0.0, 4.0].map(|time_s| at(time_s, braked_n(300.0))), [1.4, 2.1]);
+        assert_eq!([0.0, 4.0].map(|time_s| at(time_s, braked_n(300.0))), [1.4, 1.5 * 1.4]);
         assert_eq!(at(4.0, braked_n(0.0)), 1.5, "wheels that roll freely");
         let locked = [WheelEffort { locked: 1.0, ..WheelEffort::FREE }; 4];
         assert_eq!(at(0.0, VehicleInput { wheels: Some(locked), ..VehicleInput::RELEASED }), 1.4);
