@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
+use egui::{ComboBox, Grid, Rect, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::import::column_row::column_ui;
@@ -61,6 +61,8 @@ impl ImportDialog {
                 });
                 ui.add_space(GAP);
                 ui.vertical(|ui| {
+                    // Long texts in its grids wrap at this edge; they made the dialog wider.
+                    ui.shrink_clip_rect(Rect::everything_left_of(ui.max_rect().right()));
                     self.preview_ui(ui);
                     self.left_open_ui(ui);
                 });
@@ -349,15 +351,16 @@ impl ImportDialog {
             ui.weak("As the variant says that asks about this file");
             return;
         };
+        if preview.impulse_n_s.is_some_and(|impulse_n_s| said.pulls(impulse_n_s)) {
+            // Above the fold of a small window.
+            notice_ui(ui, Severity::Warning, PULLS);
+        }
         Grid::new("import start").num_columns(2).show(ui, |ui| {
             file_vehicle_ui(ui, &mut said.vehicle, self.units);
             if preview.kind == FileKind::Force {
                 start_fields(ui, &mut said.start, preview.begins_m_s, self.units);
             }
         });
-        if preview.impulse_n_s.is_some_and(|impulse_n_s| said.pulls(impulse_n_s)) {
-            notice_ui(ui, Severity::Warning, PULLS);
-        }
     }
 
     fn buttons_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
