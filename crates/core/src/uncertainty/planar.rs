@@ -72,6 +72,18 @@ impl PlanarMixture {
         Self::new(mixtures.into_iter().flat_map(|mixture| mixture.parts.clone()).collect())
     }
 
+    /// The distribution of a position that is recorded to multiples of `resolution_m` in X and in Y: the error
+    /// of rounding, of variance `resolution_m²/12`, comes on top.
+    #[must_use]
+    pub fn recorded_to(mut self, resolution_m: f64) -> Self {
+        let variance_m2 = resolution_m * resolution_m / 12.0;
+        for part in &mut self.parts {
+            part.covariance[0] += variance_m2;
+            part.covariance[2] += variance_m2;
+        }
+        self
+    }
+
     /// The normal distributions of the mixture.
     pub fn parts(&self) -> &[PlanarPart] {
         &self.parts
@@ -186,6 +198,14 @@ impl WithSimd for Densities<'_> {
 mod tests {
     use super::*;
     use crate::uncertainty::PlanarGrid;
+
+    #[test]
+    fn a_record_adds_the_variance_of_its_rounding() {
+        let part = PlanarPart { weight: 1.0, mean: [1.0, 2.0], covariance: [0.04, 0.01, 0.09] };
+        let recorded = PlanarMixture::new(vec![part]).recorded_to(0.6);
+        let [xx, xy, yy] = recorded.parts()[0].covariance;
+        assert!((xx - 0.07).abs() < 1e-12 && xy == 0.01 && (yy - 0.12).abs() < 1e-12);
+    }
 
     #[test]
     fn densities_side_by_side_are_those_of_each_point() {

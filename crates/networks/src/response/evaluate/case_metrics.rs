@@ -158,12 +158,12 @@ fn infinite() -> MotionError {
 }
 
 fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> MotionCoverage {
-    let last = case.states.len().saturating_sub(1);
+    let (last, resolution_m) = (case.states.len().saturating_sub(1), case.resolution_m());
     let mut sum = MotionCoverage::default();
     let mut n = 0.0;
     for (at, state) in case.states.iter().enumerate().skip(STRIDE).step_by(STRIDE) {
         let point = [state.x_m, state.y_m];
-        let position = distribution.position(at);
+        let position = distribution.position(at).recorded_to(resolution_m);
         let level = position.level_of(point);
         sum.path_50 += f64::from(u8::from(level <= 0.5));
         sum.path_90 += f64::from(u8::from(level <= 0.9));
@@ -178,7 +178,8 @@ fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> MotionCov
         n += 1.0;
     }
     let end = case.states.last().copied().unwrap_or_default();
-    let end_level = distribution.position(last).level_of([end.x_m, end.y_m]);
+    let end_level =
+        distribution.position(last).recorded_to(resolution_m).level_of([end.x_m, end.y_m]);
     let n = f64::max(n, 1.0);
     MotionCoverage {
         path_50: sum.path_50 / n,

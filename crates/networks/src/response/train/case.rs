@@ -67,7 +67,23 @@ pub enum ResponseCaseError {
 /// Smallest number of samples of a case.
 pub(crate) const MIN_SAMPLES: usize = 10;
 
+/// Steps to which positions are recorded, m, that are told apart from arbitrary numbers.
+const RESOLUTIONS_M: [f64; 2] = [0.01, 0.001];
+
 impl ResponseCase {
+    /// Step to which its positions are recorded, m; 0 for a finer one. What lies between two samples is half
+    /// of it at times.
+    pub fn resolution_m(&self) -> f64 {
+        let is_of = |resolution_m: &f64| {
+            let is_multiple = |value: f64| {
+                let halves = 2.0 * value / resolution_m;
+                (halves - halves.round()).abs() < 1e-6 * (1.0 + halves.abs())
+            };
+            self.states.iter().all(|state| is_multiple(state.x_m) && is_multiple(state.y_m))
+        };
+        RESOLUTIONS_M.into_iter().find(is_of).unwrap_or(0.0)
+    }
+
     /// Whether a wheel is driven, braked, dragged or locked.
     pub fn is_braked(&self) -> bool {
         self.inputs.iter().any(|input| input.wheels.is_some())
@@ -241,6 +257,30 @@ fn digest(states: &[VehicleState<f64>], inputs: &[VehicleInput<f64>]) -> String 
 mod tests {
     use super::*;
     use impactlab_core::vehicle::Preset;
+
+    #[test]
+    fn the_step_to_which_positions_are_recorded_is_seen() {
+        let of = |positions: &[f64]| {
+            let states = positions.iter().map(|x_m| VehicleState {
+                x_m: *x_m,
+                y_m: -2.0 * x_m,
+                ..VehicleState::default()
+            });
+            let case = ResponseCase {
+                name: "a".to_owned(),
+                vehicle: Preset::Reference.parameters(),
+                states: states.collect(),
+                inputs: Vec::new(),
+                spins: false,
+                digest: String::new(),
+            };
+            case.resolution_m()
+        };
+        // Half of a step lies between two samples.
+        assert_eq!(of(&[0.0, 0.12, 0.185, 0.25]), 0.01);
+        assert_eq!(of(&[0.0, 0.12, 250.183]), 0.001);
+        assert_eq!(of(&[0.0, 0.12, 0.183_417]), 0.0);
+    }
 
     #[test]
     fn the_shipped_trajectories_are_read_with_their_forces_and_frictions() {

@@ -41,7 +41,11 @@ const SHORTFALL: f64 = 3.0;
 /// Steps from one instant at which the regions are looked at to the next: 1 s, up to 12 s, which is as
 /// long as the recordings of a fleet.
 const STRIDE_STEPS: usize = 100;
-const N_INSTANTS: usize = 12;
+const MOST_STRIDES: usize = 12;
+/// The first instant, 0.5 s: where motions are short, what comes before the first second is a good part of
+/// them.
+const FIRST_STEPS: usize = 50;
+const N_INSTANTS: usize = MOST_STRIDES + 1;
 /// Motions that are asked about, of all cars: some from each.
 const MOST_MOTIONS: usize = 240;
 /// Paths of 4 s that take as long to compute as 1 s of the forecast of a motion.
@@ -136,7 +140,7 @@ pub(super) fn n_calibration_steps<'a>(
 
 /// The same of one forecast of a motion.
 fn n_steps_of_forecast(case: &ResponseCase) -> usize {
-    let n_strides = case.inputs.len().min(N_INSTANTS * STRIDE_STEPS).div_ceil(STRIDE_STEPS);
+    let n_strides = case.inputs.len().min(MOST_STRIDES * STRIDE_STEPS).div_ceil(STRIDE_STEPS);
     n_strides * PATHS_PER_STRIDE
 }
 
@@ -364,8 +368,10 @@ impl Forecasts {
         let Some(initial) = case.states.first() else {
             return Ok(Self { recorded: Vec::new(), positions: vec![Vec::new(); models.len()] });
         };
-        let inputs = &case.inputs[..case.inputs.len().min(N_INSTANTS * STRIDE_STEPS)];
-        let steps = (1..=N_INSTANTS).map(|instant| instant * STRIDE_STEPS);
+        let inputs = &case.inputs[..case.inputs.len().min(MOST_STRIDES * STRIDE_STEPS)];
+        let strides = (1..=MOST_STRIDES).map(|stride| stride * STRIDE_STEPS);
+        let steps = std::iter::once(FIRST_STEPS).chain(strides);
+        let resolution_m = case.resolution_m();
         let recorded: Vec<(usize, &VehicleState<f64>)> = steps
             .filter(|at| *at <= inputs.len())
             .map_while(|at| Some((at, case.states.get(at)?)))
@@ -373,7 +379,8 @@ impl Forecasts {
         // The draws of one model at a time are in memory.
         let positions_with = |model: &ResponseModel| -> Result<Vec<PlanarMixture>, LearningError> {
             let forecast = model.predictor(&case.vehicle)?.forecast(initial, inputs);
-            Ok(recorded.iter().map(|(at, _)| forecast.position(*at)).collect())
+            let position = |(at, _): &(usize, _)| forecast.position(*at).recorded_to(resolution_m);
+            Ok(recorded.iter().map(position).collect())
         };
         let positions = models.iter().map(positions_with).collect::<Result<_, _>>()?;
         Ok(Self {
