@@ -11,7 +11,7 @@ use crate::cli::CliError;
 use crate::cli::commands::atlas_make::{self, MakeArgs};
 use crate::cli::commands::atlas_slice::{self, SliceArgs};
 use crate::cli::console::{Console, Verdict, print_table};
-use crate::cli::options::UnitsArg;
+use crate::cli::options::{UNITS, one_value_of};
 use impactlab_core::units::{NumberFormat, Quantity, Unit, UnitSystem, percent};
 use impactlab_sweep::Outcome;
 use impactlab_sweep::atlas::{Atlas, Axis, Corridor, Measure, Sensitivity, SliceCell};
@@ -88,8 +88,8 @@ struct CellArgs {
     #[command(flatten)]
     held: HeldArgs,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 #[derive(Debug, Args)]
@@ -361,7 +361,7 @@ fn cell(
     args: &CellArgs,
     console: &mut Console<'_>,
 ) -> Result<(), CliError> {
-    let units = args.units.into();
+    let units = args.units;
     let bins = args.held.bins(atlas, units)?;
     let cell = atlas.cell(&bins);
     let outcome = |measure: Measure| {

@@ -10,9 +10,9 @@ use crate::cli::commands::atlas::{
     Held, HeldArgs, axis_idx, doubt_text, listed, measure_of, measure_text, print_held,
 };
 use crate::cli::console::{Console, print_table, shown_path};
-use crate::cli::options::{OverwriteArg, UnitsArg, size_px};
+use crate::cli::options::{OverwriteArg, UNITS, one_value_of, size_px};
 use impactlab_core::data::write_atomically;
-use impactlab_core::units::percent;
+use impactlab_core::units::{UnitSystem, percent};
 use impactlab_document::figure::{AtlasFigure, atlas_figure, write_slice_csv};
 use impactlab_draw::Canvas;
 use impactlab_sweep::atlas::{Atlas, Axis, Measure, Slice, SliceCell};
@@ -37,8 +37,8 @@ pub(super) struct SliceArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of text and picture
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
     /// Dark ground
     #[arg(long)]
     dark: bool,
@@ -89,7 +89,7 @@ pub(super) fn run(
     if x == y {
         return Err(CliError::AxisTwice { name: args.x.clone() });
     }
-    let (measure, held) = (measure_of(&args.outcome)?, args.held.bins(atlas, args.units.into())?);
+    let (measure, held) = (measure_of(&args.outcome)?, args.held.bins(atlas, args.units)?);
     for (axis, name) in [(x, &args.x), (y, &args.y)] {
         if held.get(axis).is_some_and(Option::is_some) {
             return Err(CliError::AxisOfMapSet { name: name.clone() });
@@ -101,12 +101,12 @@ pub(super) fn run(
             write_picture(atlas, [x, y], &held, measure, (args, out.as_path()))?
         }
         (Some(out), _) => write_atomically(out, args.overwrite.into(), |file| {
-            let told = restrictions(note, &listed(atlas, &held, args.units.into()));
+            let told = restrictions(note, &listed(atlas, &held, args.units));
             write_slice_csv(&slice, measure, &told, file).map_err(std::io::Error::other)
         })?,
         (None, _) => {}
     }
-    let units = args.units.into();
+    let units = args.units;
     let printed = PrintedSlice {
         note,
         out: args.out.as_deref(),
@@ -139,8 +139,8 @@ fn restrictions(note: &str, held: &[Held]) -> String {
 }
 
 /// A row for each cell.
-fn table(slice: &Slice, measure: Measure, units: UnitsArg) -> Vec<Vec<String>> {
-    let (units, width) = (units.into(), slice.x.n_bins().max(1));
+fn table(slice: &Slice, measure: Measure, units: UnitSystem) -> Vec<Vec<String>> {
+    let width = slice.x.n_bins().max(1);
     let row = |(idx, cell): (usize, &SliceCell)| {
         vec![
             slice.x.bin_text(idx % width, units),
@@ -169,7 +169,7 @@ fn write_picture(
     measure: Measure,
     (args, out): (&SliceArgs, &Path),
 ) -> Result<(), CliError> {
-    let units = args.units.into();
+    let units = args.units;
     let figure = atlas_figure(&AtlasFigure { atlas, axes, held, measure, case: None, units });
     let canvas = Canvas { size_px: args.size, dark: args.dark, ..Canvas::default() };
     let image = impactlab_draw::figure_image(&figure, canvas)?;

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar, within_line};
-use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg};
+use crate::cli::options::{OverwriteArg, TrustArg, UNITS, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::units::UnitSystem;
 use impactlab_study::Report;
@@ -45,8 +45,8 @@ struct RunArgs {
     #[command(flatten)]
     trust: TrustArg,
     /// Units of the text
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const RUN_EXAMPLES: &str = "\
@@ -154,7 +154,7 @@ fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliErr
     let report = under_bar(|observer| case.ask(&args.variant, &console.library, observer))?;
     let mut report = report.complete().ok_or(CliError::Cancelled)?;
     report.changes.extend(CaseOnDisk::read(&args.case)?.change());
-    console.print(&report, |out| print_case(out, &report, args.units.into()))?;
+    console.print(&report, |out| print_case(out, &report, args.units))?;
     Ok(Verdict::from_problems(!report.is_clean()))
 }
 

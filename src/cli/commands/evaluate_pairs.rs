@@ -6,9 +6,10 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{UnitsArg, Values, count, one_value_of};
+use crate::cli::options::{UNITS, Values, count, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::DRAWS;
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{EvaluatePairsRequest, PairSplit};
 
@@ -48,8 +49,8 @@ pub(in crate::cli) struct EvaluatePairsArgs {
     #[arg(long, conflicts_with = "model")]
     physics_only: bool,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -79,7 +80,7 @@ pub(in crate::cli) fn run(
         physics_only: args.physics_only,
     };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    let units = args.units.into();
+    let units = args.units;
     console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
     Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
 }

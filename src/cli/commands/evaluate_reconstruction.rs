@@ -7,9 +7,10 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
-use crate::cli::options::{OverwriteArg, UnitsArg, Values, count, one_value_of};
+use crate::cli::options::{OverwriteArg, UNITS, Values, count, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
+use impactlab_core::units::UnitSystem;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
 use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
 
@@ -59,8 +60,8 @@ pub(in crate::cli) struct EvaluateReconstructionArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the text (JSON and CSV are always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -98,7 +99,7 @@ pub(in crate::cli) fn run(
         Ok(answer.report.provenance.clone())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
-    let units = args.units.into();
+    let units = args.units;
     console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
     Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
 }

@@ -10,7 +10,7 @@ use crate::cli::commands::render_film::{SampledArgs, reconstruction};
 use crate::cli::commands::render_reconstruction::{ExportedReconstruction, exported};
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
-use crate::cli::options::{OverwriteArg, UnitsArg, number};
+use crate::cli::options::{OverwriteArg, UNITS, number, one_value_of};
 use impactlab_core::data::write::check_ending;
 use impactlab_core::data::{
     write_bytes, write_restricted_series_csv, write_restricted_series_parquet,
@@ -18,6 +18,7 @@ use impactlab_core::data::{
 };
 use impactlab_core::ranges::INSTANT;
 use impactlab_core::site::MapFormat;
+use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::PathPoint;
 use impactlab_document::exchange::{
     DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse, map,
@@ -50,8 +51,8 @@ pub(in crate::cli) struct ExportArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of labels and restrictions; coordinates and columns keep those of their format
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -120,7 +121,7 @@ pub(in crate::cli) fn run(
     if let Some(request) = reconstruction(&args.case, &args.sampled)? {
         return export_reconstruction(args, (format, &request), console);
     }
-    let built = build(&args.case, None, args.units.into(), console)?;
+    let built = build(&args.case, None, args.units, console)?;
     for time_s in &args.at {
         built.check_time("--at", *time_s)?;
     }
@@ -171,8 +172,7 @@ fn export_reconstruction(
         | FormatArg::Glb
         | FormatArg::Motion => {}
     }
-    let ExportedReconstruction { scene, paths, notes } =
-        exported(request, args.units.into(), console)?;
+    let ExportedReconstruction { scene, paths, notes } = exported(request, args.units, console)?;
     let existing = args.overwrite.into();
     let mut bytes = Vec::new();
     match format {

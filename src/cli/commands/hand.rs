@@ -4,10 +4,10 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{UnitsArg, Values, count, number, one_value_of};
+use crate::cli::options::{UNITS, Values, count, number, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::{HAND_COORDINATE, HAND_DRAWS};
-use impactlab_core::units::TypedError;
+use impactlab_core::units::{TypedError, UnitSystem};
 use impactlab_reconstruct::evidence::Stated;
 use impactlab_reconstruct::hand::{HandField, HandInputs, HandMethod};
 use impactlab_study::{DEFAULT_HAND_DRAWS, HandRequest};
@@ -32,8 +32,8 @@ pub(in crate::cli) struct HandArgs {
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -84,7 +84,7 @@ pub(in crate::cli) fn run(args: &HandArgs, console: &mut Console<'_>) -> Result<
         ..HandRequest::new(args.method)
     };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    console.print(&answer.report, |out| print_answer(out, &answer.report, args.units.into()))?;
+    console.print(&answer.report, |out| print_answer(out, &answer.report, args.units))?;
     Ok(Verdict::Clean)
 }
 

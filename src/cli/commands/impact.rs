@@ -6,8 +6,9 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::UnitsArg;
+use crate::cli::options::{UNITS, one_value_of};
 use crate::cli::text::print_answer;
+use impactlab_core::units::UnitSystem;
 use impactlab_study::{ImpactRequest, ScenarioChoice};
 
 /// Solve an impact: impulse, velocities after it, delta-v, energy, direction of force
@@ -18,8 +19,8 @@ pub(in crate::cli) struct ImpactArgs {
     #[arg(value_name = "NAME|FILE")]
     scenario: PathBuf,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
     /// Friction as in the paper: always sliding
     #[arg(long)]
     paper: bool,
@@ -42,6 +43,6 @@ pub(in crate::cli) fn run(
     let scenario = ScenarioChoice::File(args.scenario.clone());
     let request = ImpactRequest { paper: args.paper, ..ImpactRequest::new(scenario) };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    console.print(&answer.report, |out| print_answer(out, &answer.report, args.units.into()))?;
+    console.print(&answer.report, |out| print_answer(out, &answer.report, args.units))?;
     Ok(Verdict::Clean)
 }

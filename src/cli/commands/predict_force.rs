@@ -8,9 +8,10 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_prediction;
-use crate::cli::options::{OverwriteArg, UnitsArg, count};
+use crate::cli::options::{OverwriteArg, UNITS, count, one_value_of};
 use crate::cli::text::print_answer;
 use impactlab_core::ranges::SAMPLES;
+use impactlab_core::units::UnitSystem;
 use impactlab_networks::shipped::ModelSource;
 use impactlab_study::{
     Answer, ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice,
@@ -52,8 +53,8 @@ pub(in crate::cli) struct PredictForceArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -102,7 +103,7 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let printed = PrintedForce { report: &answer.report, out };
     let report = &answer.report;
-    console.print(&printed, |out| print_answer(out, report, args.units.into()))?;
+    console.print(&printed, |out| print_answer(out, report, args.units))?;
     Ok(Verdict::Clean)
 }
 

@@ -9,13 +9,15 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_json, write_motion_prediction};
 use crate::cli::options::{
-    EndingArgs, OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
+    EndingArgs, OverwriteArg, UNITS, VehicleArg, contact_point, count, number, one_value_of,
+    window_s,
 };
 use crate::cli::text::print_answer;
 use impactlab_core::data::{ColumnMap, DatasetKind};
 use impactlab_core::ranges::{
     DRAWS, REST_LIMIT, ROAD_FRICTION, ROAD_FRICTION_SIGMA, VEHICLE_DRAWS,
 };
+use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_networks::response::STEP_S;
 use impactlab_networks::shipped::ModelSource;
@@ -124,8 +126,8 @@ pub(in crate::cli) struct PredictMotionArgs {
     #[arg(long)]
     overwrite: bool,
     /// Units of text and pictures (JSON and tables are always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -203,7 +205,7 @@ pub(in crate::cli) fn run(
     let out = (folder, existing, &KNOWN_FILES[..]);
     let answer = console.ask_into(&request, Some(out), |output, answer| {
         check_window_end(args.window, answer.forecast.end_s())?;
-        let (staging, units) = (output.staging(), args.units.into());
+        let (staging, units) = (output.staging(), args.units);
         let wanted = MotionFiles { folder: staging, window_s: args.window, units };
         let names = write_motion_prediction(&wanted, answer)?;
         files = names.iter().map(|name| output.path_of(name)).collect();
@@ -216,7 +218,7 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let printed = PrintedMotion { report: &answer.report, files: &files };
     let report = &answer.report;
-    console.print(&printed, |out| print_answer(out, report, args.units.into()))?;
+    console.print(&printed, |out| print_answer(out, report, args.units))?;
     Ok(Verdict::Clean)
 }
 

@@ -8,8 +8,9 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_reconstruction;
-use crate::cli::options::{EvidenceArgs, OverwriteArg, UnitsArg};
+use crate::cli::options::{EvidenceArgs, OverwriteArg, UNITS, one_value_of};
 use crate::cli::text::print_answer;
+use impactlab_core::units::UnitSystem;
 use impactlab_study::{Answer, ReconstructReport, ReconstructRequest};
 
 /// From the evidence to the speeds before the impact, or of a single car at the start, as a distribution
@@ -30,8 +31,8 @@ pub(in crate::cli) struct ReconstructArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
@@ -80,6 +81,6 @@ pub(in crate::cli) fn run(
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let printed = PrintedReconstruction { report: &answer.report, out };
-    console.print(&printed, |out| print_answer(out, &answer.report, args.units.into()))?;
+    console.print(&printed, |out| print_answer(out, &answer.report, args.units))?;
     Ok(Verdict::Clean)
 }

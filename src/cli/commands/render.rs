@@ -14,12 +14,13 @@ use crate::cli::commands::render_replay::{self, ReplayFigureArgs};
 use crate::cli::commands::render_scene::{self, SceneArgs, ShownScene};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
-    OverwriteArg, SourceArgs, UnitsArg, Values, VehicleArg, Words, contact_point, number, one_of,
+    OverwriteArg, SourceArgs, UNITS, Values, VehicleArg, Words, contact_point, number, one_of,
     one_value_of, size_px,
 };
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::{Channel, write_atomically};
 use impactlab_core::ranges::{PICTURE_SCALE, SPEED};
+use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::ContactPoint;
 use impactlab_document::figure::{Figure, WheelInput, write_figure_csv};
 use impactlab_draw::Canvas;
@@ -108,8 +109,8 @@ pub(super) struct OutputArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the figure
-    #[arg(long, value_enum, default_value_t)]
-    pub(super) units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    pub(super) units: UnitSystem,
     /// Dark ground
     #[arg(long)]
     dark: bool,
@@ -290,7 +291,7 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
         }
     };
     console.check_target(Some(&output.out), output.overwrite.into())?;
-    let units = output.units.into();
+    let units = output.units;
     let mut scene: Option<ShownScene> = None;
     let (mut figure, notes) = match args {
         FigureArgs::Force(args) => {

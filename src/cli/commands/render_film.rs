@@ -10,12 +10,13 @@ use crate::cli::commands::render_reconstruction::cars_scene;
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, SeenArgs, ShownScene, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
-    CameraKeyArg, OverwriteArg, UnitsArg, VehicleArg, camera_key, count, film_section, number,
-    size_px,
+    CameraKeyArg, OverwriteArg, UNITS, VehicleArg, camera_key, count, film_section, number,
+    one_value_of, size_px,
 };
 use impactlab_core::ranges::{
     FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE, RECONSTRUCTION_PARTICLES,
 };
+use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::{FilmSection, FilmTiming, Scene};
 use impactlab_draw::film::Film;
 use impactlab_draw::scene::{CameraKey, SceneCourse};
@@ -55,8 +56,8 @@ pub(super) struct FilmArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the labels
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
     /// Dark ground
     #[arg(long)]
     dark: bool,
@@ -130,7 +131,7 @@ fn scene(
     args: &FilmArgs,
     console: &mut Console<'_>,
 ) -> Result<(Scene, Vec<SceneCourse>, Vec<String>), CliError> {
-    let (case, units) = (&args.seen.case, args.units.into());
+    let (case, units) = (&args.seen.case, args.units);
     match reconstruction(case, &args.sampled)? {
         Some(request) => cars_scene(&request, units, console),
         None => {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
-    AXLES, OverwriteArg, SIDES, UnitsArg, VehicleArg, count, number, one_value_of,
+    AXLES, OverwriteArg, SIDES, UNITS, VehicleArg, count, number, one_value_of,
 };
 use crate::cli::text::{PrintedAnswer, print_answer};
 use impactlab_core::data::write::check_ending;
@@ -17,6 +17,7 @@ use impactlab_core::ranges::{
     HEADING, POSITION, RECORDED_SPEED_SIGMA, REPLAY_DRAWS, REPLAY_START, ROAD_FRICTION,
     ROAD_FRICTION_SIGMA, STEERING_RATIO, STEERING_RATIO_SIGMA,
 };
+use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::DrivenAxle;
 use impactlab_study::{Answer, ContactPose, DEFAULT_REPLAY_DRAWS, ReplayReport, ReplayRequest};
 
@@ -36,8 +37,8 @@ pub(in crate::cli) struct ReplayArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 /// The record, and how it is followed.
@@ -162,7 +163,7 @@ pub(in crate::cli) fn run(
         write_restricted_series_csv(path, existing, &answer.path, restrictions.as_deref())?;
     }
     console.print(&PrintedReplay { report, out }, |text| {
-        print_answer(text, PrintedAnswer::from(report).written(out), args.units.into())
+        print_answer(text, PrintedAnswer::from(report).written(out), args.units)
     })?;
     Ok(Verdict::Clean)
 }

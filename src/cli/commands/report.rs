@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
-use crate::cli::options::{OverwriteArg, TrustArg, UnitsArg, Values, count, one_value_of};
+use crate::cli::options::{OverwriteArg, TrustArg, UNITS, Values, count, one_value_of};
 use impactlab_core::data::write_bytes;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
+use impactlab_core::units::UnitSystem;
 use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
 };
@@ -47,8 +48,8 @@ pub(in crate::cli) struct ReportArgs {
     #[arg(long, value_parser = one_value_of(LANGUAGES), default_value = "en")]
     language: Language,
     /// Units of the numbers
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
     /// Size of the pages; letter with US units and A4 with others if not given
     #[arg(long, value_parser = one_value_of(PAPERS))]
     paper: Option<Paper>,
@@ -161,7 +162,7 @@ impl ReportArgs {
     }
 
     fn settings(&self) -> Result<ReportSettings, CliError> {
-        let (language, units) = (self.language, self.units.into());
+        let (language, units) = (self.language, self.units);
         let paper = self.paper.unwrap_or_else(|| Paper::usual(units));
         let today = || ReportDate::from_instant(SystemTime::now());
         let date = self.date.or_else(today).ok_or(CliError::NoClock)?;

@@ -9,8 +9,8 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
-    EQUATIONS, EndingArgs, INTEGRATORS, OverwriteArg, SAMPLINGS, UnitsArg, VehicleArg,
-    contact_point, count, number, one_value_of,
+    EQUATIONS, EndingArgs, INTEGRATORS, OverwriteArg, SAMPLINGS, UNITS, VehicleArg, contact_point,
+    count, number, one_value_of,
 };
 use crate::cli::text::{PrintedAnswer, print_answer};
 use impactlab_core::data::write::check_ending;
@@ -21,6 +21,7 @@ use impactlab_core::ranges::{
     REST_LIMIT, ROAD_FRICTION, ROAD_FRICTION_SIGMA, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS,
     YAW_RATE,
 };
+use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{ContactPoint, Equations, Integrator};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
@@ -72,8 +73,8 @@ pub(in crate::cli) struct SimulateArgs {
     #[command(flatten)]
     overwrite: OverwriteArg,
     /// Units of the text (JSON is always SI)
-    #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
     /// Simulate until the vehicle has come to rest, for two minutes or the --duration at most
     #[arg(long, conflicts_with = "trajectory")]
     until_rest: bool,
@@ -261,7 +262,7 @@ fn simulate_one(
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {
-        print_answer(text, PrintedAnswer::from(report).written(out), args.units.into())
+        print_answer(text, PrintedAnswer::from(report).written(out), args.units)
     })?;
     match &args.out {
         Some(path) if out.is_none() => Err(CliError::NotSimulated { path: path.clone() }),
@@ -300,7 +301,7 @@ fn simulate_dataset(
     let report = &answer.report;
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| {
-        print_answer(text, PrintedAnswer::from(report).written(out), args.units.into())
+        print_answer(text, PrintedAnswer::from(report).written(out), args.units)
     })?;
     Ok(Verdict::from_problems(!report.failures.is_empty()))
 }

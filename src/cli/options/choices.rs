@@ -4,32 +4,13 @@ use std::convert::Infallible;
 use std::fmt::Debug;
 use std::str::FromStr;
 
+use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, ValueEnum};
 
 use impactlab_core::data::{RecordedSide, Sampling};
 use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{DrivenAxle, Equations, Integrator};
 use impactlab_study::{BadCases, EvaluatedCases, VehicleChoice, word};
-
-/// The units of the text.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub(in crate::cli) enum UnitsArg {
-    /// km/h, deg, kN, kJ, m
-    #[default]
-    Si,
-    /// mph, deg, lbf, ft lbf, ft
-    Us,
-}
-
-impl From<UnitsArg> for UnitSystem {
-    fn from(units: UnitsArg) -> Self {
-        match units {
-            UnitsArg::Si => Self::Si,
-            UnitsArg::Us => Self::Us,
-        }
-    }
-}
 
 /// The values of an option, each with its meaning for the help, which may be empty. Their words are those of
 /// JSON with hyphens, by [`typed_word`].
@@ -88,6 +69,10 @@ impl VehicleArg {
         arg.as_ref().map_or(VehicleChoice::Automatic, |arg| arg.0.clone())
     }
 }
+
+/// The units in which numbers are told.
+pub(in crate::cli) const UNITS: Values<UnitSystem> =
+    &[(UnitSystem::Si, "km/h, deg, kN, kJ, m"), (UnitSystem::Us, "mph, deg, lbf, ft lbf, ft")];
 
 /// What happens to cases that cannot be used.
 #[derive(Debug, Clone, Copy, Args)]

@@ -13,7 +13,7 @@ mod trust;
 
 pub(super) use camera_key::{CameraKeyArg, camera_key};
 pub(super) use choices::{
-    AXLES, BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SIDES, SPLITS, UnitsArg, Values,
+    AXLES, BadCasesArg, EQUATIONS, INTEGRATORS, SAMPLINGS, SIDES, SPLITS, UNITS, Values,
     VehicleArg, Words, one_of, one_value_of,
 };
 pub(super) use ending::EndingArgs;
