@@ -160,8 +160,9 @@ fn map(
         bins[axis(word)] = Some(*bin);
     }
     let (held, measure, units) = (&bins[..], outcome.into(), UnitSystem::Si);
-    let axes = axes.map(axis);
-    picture(&atlas_figure(&AtlasFigure { atlas, axes, held, measure, case, units }))
+    let (axes, other_networks) = (axes.map(axis), &[]);
+    let of = AtlasFigure { atlas, axes, held, measure, case, units, other_networks };
+    picture(&atlas_figure(&of))
 }
 
 fn beside(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
@@ -201,7 +202,7 @@ fn the_pictures_of_the_atlas_are_those_of_the_atlas_that_is_shipped() {
     let half_turn = map(speeds, &[], Outcome::Turns180, None);
     let atlas = Atlas::shipped().expect("the shipped atlas");
     let indices = atlas.sensitivity(Outcome::Turns90).expect("the shipped atlas has Sobol indices");
-    let bars = picture(&sensitivity_figure(Outcome::Turns90.label(), atlas, &indices));
+    let bars = picture(&sensitivity_figure(Outcome::Turns90.label(), atlas, &indices, &[]));
     shown("atlas-policy.md", "atlas-influence.png", &beside(&half_turn, &bars));
 
     // Contact 0.1 m ahead of the rear axle, closing at 4 m/s.

@@ -35,6 +35,8 @@ pub struct MapsOf {
     pub units: UnitSystem,
     /// The case at hand.
     pub case: CasePoint,
+    /// The networks of the program that are not those that computed the atlas.
+    pub other_networks: Vec<String>,
 }
 
 /// An input of the case at hand beside the atlas.
@@ -102,6 +104,7 @@ impl MapsOf {
             measure: *measure,
             case: self.case.in_map(atlas, map, self.beside),
             units: self.units,
+            other_networks: &self.other_networks,
         });
         let bin = self.beside.and_then(|axis| held.get(axis).copied().flatten());
         let of_bin = self.beside.and_then(|axis| atlas.axes.get(axis)).zip(bin);

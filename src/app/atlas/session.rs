@@ -42,9 +42,14 @@ impl AtlasSession {
         self.read.as_ref()?.atlas.as_ref().err().map(String::as_str)
     }
 
+    /// The networks of the program that are not those that computed the atlas.
+    pub fn other_networks(&self) -> &[String] {
+        self.read.as_ref().map_or(&[], |read| read.other_networks.as_slice())
+    }
+
     /// That the atlas was computed with other networks than those of the program, where it was.
     pub fn warning(&self) -> Option<String> {
-        let others = &self.read.as_ref()?.other_networks;
+        let others = self.other_networks();
         (!others.is_empty()).then(|| {
             let others = others.join(", ");
             format!(

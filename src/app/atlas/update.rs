@@ -58,6 +58,7 @@ impl State {
             beside: self.view.atlas.beside(&atlas),
             units: self.view.units,
             case: self.case_in(&atlas),
+            other_networks: self.session.atlas.other_networks().to_vec(),
         };
         let session = &mut self.session.atlas;
         if session.made_of.as_ref() != Some(&of) {

@@ -34,7 +34,8 @@ pub fn sensitivity_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     ui.add(Label::new(RichText::new(MEANING).weak()).wrap());
-    let figure = sensitivity_figure(choice.measure.label(), atlas, &indices);
+    let other_networks = session.atlas.other_networks();
+    let figure = sensitivity_figure(choice.measure.label(), atlas, &indices, other_networks);
     // In a low pane the bars are scrolled: squeezed, they lose their names.
     let least = BAR_HEIGHT * figure.y.names.len() as f32 + AXIS_HEIGHT;
     let options = FigureOptions {

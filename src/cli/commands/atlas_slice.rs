@@ -98,7 +98,11 @@ pub(super) fn run(
     let slice = atlas.slice(x, y, &held, measure);
     match (&args.out, picture) {
         (Some(out), Some(true)) => {
-            write_picture(atlas, [x, y], &held, measure, (args, out.as_path()))?
+            let other_networks = &atlas.other_networks_in(&console.library)?;
+            let (held, units) = (held.as_slice(), args.units);
+            let axes = [x, y];
+            let of = AtlasFigure { atlas, axes, held, measure, case: None, units, other_networks };
+            write_picture(&of, args, out)?;
         }
         (Some(out), _) => write_atomically(out, args.overwrite.into(), |file| {
             let told = restrictions(note, &listed(atlas, &held, args.units));
@@ -162,15 +166,8 @@ fn rows_text(cell: &SliceCell) -> String {
     }
 }
 
-fn write_picture(
-    atlas: &Atlas,
-    axes: [usize; 2],
-    held: &[Option<usize>],
-    measure: Measure,
-    (args, out): (&SliceArgs, &Path),
-) -> Result<(), CliError> {
-    let units = args.units;
-    let figure = atlas_figure(&AtlasFigure { atlas, axes, held, measure, case: None, units });
+fn write_picture(of: &AtlasFigure<'_>, args: &SliceArgs, out: &Path) -> Result<(), CliError> {
+    let figure = atlas_figure(of);
     let canvas = Canvas { size_px: args.size, dark: args.dark, ..Canvas::default() };
     let image = impactlab_draw::figure_image(&figure, canvas)?;
     impactlab_draw::save_png(&image, out, args.overwrite.into())?;

@@ -6,7 +6,9 @@ use crate::figure::contours::contours;
 use crate::figure::{Axis, CellMap, Figure, FigureElement, LineStyle, Role, Series};
 use impactlab_core::data::RESTRICTIONS_COLUMN;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
-use impactlab_core::units::{Phrase, Quantity, Unit, UnitSystem, significant, trimmed};
+use impactlab_core::units::{
+    Phrase, PhraseValue, Quantity, Unit, UnitSystem, significant, trimmed,
+};
 use impactlab_sweep::atlas::{Atlas, Measure, Sensitivity, Slice, SliceCell};
 use impactlab_sweep::{PitInput, UNKNOWNS};
 
@@ -32,12 +34,14 @@ pub struct AtlasFigure<'a> {
     pub case: Option<[f64; 2]>,
     /// Units of the axes and of the scale.
     pub units: UnitSystem,
+    /// Names of the networks in use that are not those that computed the atlas.
+    pub other_networks: &'a [String],
 }
 
 /// A map of the atlas: a colour for each cell, lines of equal value, and the case at hand. Cells with too
 /// few rows, with ones that fail or are cut off before rest, and where the networks do not apply, are hatched.
 pub fn atlas_figure(input: &AtlasFigure<'_>) -> Figure {
-    let AtlasFigure { atlas, axes: [x, y], held, measure, case, units } = *input;
+    let AtlasFigure { atlas, axes: [x, y], held, measure, case, units, other_networks } = *input;
     let slice = atlas.slice(x, y, held, measure);
     let [x_axis, y_axis] = [&slice.x, &slice.y].map(|axis| shown_axis(axis, units));
     let map = cell_map(&slice, measure, [&x_axis, &y_axis], units);
@@ -48,18 +52,33 @@ pub fn atlas_figure(input: &AtlasFigure<'_>) -> Figure {
     }
     elements.insert(0, FigureElement::CellMap(map));
     let title = title_of(atlas, [x, y], held, measure, units);
-    Figure::new(title, [x_axis, y_axis], elements).with_caveats(&caveats())
+    Figure::new(title, [x_axis, y_axis], elements).with_caveats(&caveats(other_networks))
 }
 
-/// What restricts every map, in a line below it.
-fn caveats() -> Caveats {
+/// What restricts every map, in a line below it. Where that is too long, it is cut from its end.
+fn caveats(other_networks: &[String]) -> Caveats {
+    let (en, de) = match other_networks.is_empty() {
+        true => ("", ""),
+        false => (
+            " Computed with other networks than those in use here ({0}).",
+            " Mit anderen Netzen berechnet als den hier verwendeten ({0}).",
+        ),
+    };
     let text = Phrase::new(
-        "a model study of the PIT, checked against no measured one; no speed in it is a safe speed. \
-         Hatched: few rows, or ones that fail or are cut off before rest, or the networks do not apply",
-        "eine Modellstudie zum PIT, an keinem gemessenen geprüft; keine Geschwindigkeit darin ist eine \
-         sichere. Schraffiert: wenige Rechnungen, oder solche, die scheitern oder vor dem Stillstand \
-         abgeschnitten sind, oder die Netze gelten nicht",
+        format!(
+            "a model study of the PIT, checked against no measured one; no speed in it is a safe speed.{en} \
+             Hatched: few rows, or ones that fail or are cut off before rest, or the networks do not apply"
+        ),
+        format!(
+            "eine Modellstudie zum PIT, an keinem gemessenen geprüft; keine Geschwindigkeit darin ist eine \
+             sichere.{de} Schraffiert: wenige Rechnungen, oder solche, die scheitern oder vor dem Stillstand \
+             abgeschnitten sind, oder die Netze gelten nicht"
+        ),
     );
+    let text = match other_networks.is_empty() {
+        true => text,
+        false => text.with(PhraseValue::Name(other_networks.join(", "))),
+    };
     Caveats::from(vec![Caveat::new(CaveatKind::HardlyValidated, text)])
 }
 
@@ -194,8 +213,14 @@ fn cross(at: [f64; 2], edges: &[Vec<f64>; 2]) -> Vec<FigureElement> {
 ///
 /// - `label`: the outcome;
 /// - `atlas`: whose axes name the inputs;
-/// - `indices`: the greatest first.
-pub fn sensitivity_figure(label: &str, atlas: &Atlas, indices: &[Sensitivity]) -> Figure {
+/// - `indices`: the greatest first;
+/// - `other_networks`: names of the networks in use that are not those that computed the atlas.
+pub fn sensitivity_figure(
+    label: &str,
+    atlas: &Atlas,
+    indices: &[Sensitivity],
+    other_networks: &[String],
+) -> Figure {
     let x = Axis::new("Share of the variance", Quantity::Ratio.si_unit());
     // The first stands at the top.
     let names = indices.iter().rev().map(|index| input_label(atlas, &index.name)).collect();
@@ -216,7 +241,8 @@ pub fn sensitivity_figure(label: &str, atlas: &Atlas, indices: &[Sensitivity]) -
             elements.push(FigureElement::line("± standard error", Role::Reference, whisker));
         }
     }
-    Figure::new(format!("What moves: {label}"), [x, y], elements).with_caveats(&caveats())
+    let caveats = caveats(other_networks);
+    Figure::new(format!("What moves: {label}"), [x, y], elements).with_caveats(&caveats)
 }
 
 /// What an input is called: the label of its axis, where the atlas has one.
@@ -295,6 +321,7 @@ pub fn write_slice_csv(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use impactlab_core::units::{Language, NumberFormat};
     use impactlab_sweep::Outcome;
 
     fn axis(name: &str, edges: &[f64], labels: &[&str]) -> impactlab_sweep::atlas::Axis {
@@ -361,9 +388,37 @@ mod tests {
 
     #[test]
     fn a_map_says_that_it_is_a_study_and_no_safe_speed() {
-        let caveats = caveats();
+        let caveats = caveats(&[]);
         let text = caveats.text().unwrap();
         assert!(text.contains("a model study") && text.contains("safe speed"), "{text}");
+        assert!(!text.contains("other networks"), "{text}");
         assert!(caveats.restrictions()[0].is_warning());
+    }
+
+    /// The command and the window said it beside the picture, and the picture that went to others did not.
+    #[test]
+    fn a_picture_of_an_atlas_of_other_networks_says_so() {
+        let atlas = Atlas::shipped().unwrap();
+        let other_networks = &["force".to_owned(), "response".to_owned()];
+        let map = atlas_figure(&AtlasFigure {
+            atlas,
+            axes: [0, 1],
+            held: &[],
+            measure: Measure::Mean(Outcome::Turns90),
+            case: None,
+            units: UnitSystem::Si,
+            other_networks,
+        });
+        let bars = sensitivity_figure("turns", atlas, &[], other_networks);
+        let german = NumberFormat { language: Language::De, ..NumberFormat::default() };
+        for figure in [map, bars] {
+            let restrictions = figure.caveats.restrictions();
+            let line = &restrictions[0];
+            let (computed, hatched) =
+                (line.text.find("other networks").unwrap(), line.text.find("Hatched").unwrap());
+            assert!(computed < hatched && line.text.contains("(force, response)"), "{line}");
+            let german = line.text_in(&german, &str::to_owned).unwrap();
+            assert!(german.contains("hier verwendeten (force, response). Schraff"), "{german}");
+        }
     }
 }

@@ -57,26 +57,22 @@ pub(super) fn in_atlas(
     let (Some(atlas), Ok(scenario)) = (Atlas::shipped(), scenario.load()) else {
         return InAtlas::default();
     };
-    let mut told = of_case(atlas, &scenario, &answer.analysis.vehicle, context.wording);
-    if !told.blocks.is_empty() {
-        let digests = &answer.report.provenance.model_digests;
-        told.blocks.extend(other_networks(atlas, digests, context.wording));
-    }
-    told
+    let digests = &answer.report.provenance.model_digests;
+    of_case(atlas, digests, &scenario, &answer.analysis.vehicle, context.wording)
 }
 
-/// A notice of the networks that answered and are not those of the atlas.
-fn other_networks(atlas: &Atlas, answered: &[ModelDigest], wording: &Wording) -> Option<Block> {
+/// The networks that answered and are not those of the atlas.
+fn other_networks(atlas: &Atlas, answered: &[ModelDigest], wording: &Wording) -> Vec<String> {
     let answered = answered.iter().map(|of| (&*of.network, &*of.sha256));
-    let others = atlas.other_networks(answered).into_iter().map(|it| network_name(it, wording));
-    let list = others.collect::<Vec<_>>().join(", ");
-    let text = wording.words.atlas_other_networks;
-    (!list.is_empty()).then(|| Block::Notice { text: fill(text, &[("list", &list)]) })
+    atlas.other_networks(answered).into_iter().map(|it| network_name(it, wording)).collect()
 }
 
 /// What an atlas says of a scenario.
+///
+/// - `answered`: the networks that answered.
 fn of_case(
     atlas: &Atlas,
+    answered: &[ModelDigest],
     scenario: &Scenario,
     struck: &VehicleParameters,
     wording: &Wording,
@@ -85,9 +81,15 @@ fn of_case(
     let Some(place) = place_of_case(scenario, struck) else { return InAtlas::default() };
     let mut blocks = vec![Block::heading(3, words.atlas_heading)];
     let outside = place.outside(atlas, wording.units);
+    let others = other_networks(atlas, answered, wording);
+    let notice = (!others.is_empty()).then(|| {
+        let list = others.join(", ");
+        Block::Notice { text: fill(words.atlas_other_networks, &[("list", &list)]) }
+    });
     if !outside.is_empty() {
         let list = wording.note(&outside.join("; "));
         blocks.push(Block::paragraph(fill(words.atlas_outside, &[("list", &list)])));
+        blocks.extend(notice);
         return InAtlas { blocks, picture: None };
     }
     let held = atlas.held_in_cell(&place.bins(atlas), SHOWN);
@@ -103,14 +105,20 @@ fn of_case(
         ("averaged", &*averaged),
     ];
     blocks.push(Block::paragraph(fill(words.atlas_text, &values)));
-    let others = place.other_drivers();
-    blocks.extend(others.iter().map(|text| Block::Notice { text: text.say(wording) }));
+    let drivers = place.other_drivers();
+    blocks.extend(drivers.iter().map(|text| Block::Notice { text: text.say(wording) }));
     blocks.push(Block::Table(table(&cell, wording)));
-    InAtlas { blocks, picture: map(atlas, &place, wording) }
+    blocks.extend(notice);
+    InAtlas { blocks, picture: map(atlas, &others, &place, wording) }
 }
 
 /// The map with the case in it; nothing without both axes.
-fn map(atlas: &Atlas, place: &CasePlace, wording: &Wording) -> Option<PartPicture> {
+fn map(
+    atlas: &Atlas,
+    other_networks: &[String],
+    place: &CasePlace,
+    wording: &Wording,
+) -> Option<PartPicture> {
     let [x, y] = AXES.map(|input| atlas.axis(input.name()).zip(place.value(input.name())));
     let ((x, at_x), (y, at_y)) = x.zip(y)?;
     let held = atlas.held_in_map([x, y], &place.bins(atlas), SHOWN);
@@ -121,6 +129,7 @@ fn map(atlas: &Atlas, place: &CasePlace, wording: &Wording) -> Option<PartPictur
         measure: SHOWN.into(),
         case: Some([at_x, at_y]),
         units: wording.units,
+        other_networks,
     });
     let [x, y] = [x, y].map(|axis| atlas.axes.get(axis).map(|axis| wording.name(&axis.label)));
     let (x, y, held) = (x?, y?, held_list(atlas, &held, wording));
@@ -235,14 +244,14 @@ mod tests {
         });
         let mut narrow = atlas([20.0, 30.0]);
         narrow.axes[0].label = "Speed of the struck car".to_owned();
-        let told = format!("{:?}", of_case(&narrow, &scenario, &struck, &wording).blocks);
+        let told = format!("{:?}", of_case(&narrow, &[], &scenario, &struck, &wording).blocks);
         let expected =
             "Geschwindigkeit des gestoßenen Fahrzeugs: 54,00 km/h, der Atlas reicht von 72,00 km/h";
         assert!(told.contains(expected) && !told.contains("the map"), "{told}");
         let mut slides = scenario;
         slides.striking.heading_rad += 0.3;
         let wide = atlas([10.0, 30.0]);
-        let told = format!("{:?}", of_case(&wide, &slides, &struck, &wording).blocks);
+        let told = format!("{:?}", of_case(&wide, &[], &slides, &struck, &wording).blocks);
         let expected = "zur Längsachse des stoßenden Fahrzeugs: 17,19°, der Atlas reicht von";
         assert!(told.contains(expected), "{told}");
     }
@@ -258,7 +267,7 @@ mod tests {
         let [vx_m_s, vy_m_s] = [scenario.striking.vx_world_m_s, scenario.striking.vy_world_m_s];
         scenario.striking.heading_rad = vy_m_s.atan2(vx_m_s);
         let wording = Wording::english(UnitSystem::Si);
-        let told = of_case(Atlas::shipped().unwrap(), &scenario, &struck, &wording);
+        let told = of_case(Atlas::shipped().unwrap(), &[], &scenario, &struck, &wording);
         let text = format!("{:?}", told.blocks);
         assert!(!text.contains("outside") && text.contains("another manoeuvre"), "{text}");
         for part in ["(88.51 km/h to 96.57 km/h)", "Striking car and struck car, "] {
@@ -285,29 +294,38 @@ mod tests {
             name: "shipped".to_owned(),
             sha256: sha256.to_owned(),
         };
-        assert_eq!(other_networks(&atlas, &[digest("ab")], &wording), None);
-        let told = other_networks(&atlas, &[digest("cd")], &wording);
-        let text = format!("{told:?}");
-        assert!(text.contains("Notice") && text.contains("force network"), "{text}");
+        let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
+        let told = |sha256: &str| {
+            let told = of_case(&atlas, &[digest(sha256)], &scenario, &struck, &wording);
+            let has_notice = told.blocks.iter().any(
+                |block| matches!(block, Block::Notice { text } if text.contains("(force network)")),
+            );
+            [has_notice, format!("{:?}", told.picture).contains("those in use here (")]
+        };
+        assert_eq!(told("ab"), [false; 2]);
+        assert_eq!(told("cd"), [true; 2]);
     }
 
     #[test]
     fn a_pit_is_placed_in_the_map_and_said_to_be_outside_where_it_is() {
         let (scenario, struck) = (Scenario::example(), Preset::Reference.parameters());
         let wording = Wording::english(UnitSystem::Si);
-        let inside = of_case(&atlas([10.0, 30.0]), &scenario, &struck, &wording);
+        let inside = of_case(&atlas([10.0, 30.0]), &[], &scenario, &struck, &wording);
         assert!(inside.picture.is_some());
         let text = format!("{:?}", inside.blocks);
         for part in ["200 of the 200", "model study", "turns in further"] {
             assert!(text.contains(part), "{part}: {text}");
         }
         assert!(text.contains("100.0 %"), "{text}");
-        let outside = of_case(&atlas([20.0, 30.0]), &scenario, &struck, &wording);
+        let outside = of_case(&atlas([20.0, 30.0]), &[], &scenario, &struck, &wording);
         assert_eq!(outside.picture, None);
         let text = format!("{:?}", outside.blocks);
         assert!(text.contains("outside") && text.contains("54.00 km/h"), "{text}");
         let mut other = scenario;
         other.striking.vy_world_m_s *= -1.0;
-        assert_eq!(of_case(&atlas([10.0, 30.0]), &other, &struck, &wording), InAtlas::default());
+        assert_eq!(
+            of_case(&atlas([10.0, 30.0]), &[], &other, &struck, &wording),
+            InAtlas::default()
+        );
     }
 }
