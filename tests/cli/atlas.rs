@@ -79,6 +79,7 @@ fn rows(first: u64, n: u64) -> Rows {
             .map(|(outcome, values)| column(outcome.name(), outcome.unit(), values))
             .collect(),
         index: (first..first + n).collect(),
+        caveats: None,
         reasons: vec![String::new(); n as usize],
         meta: RowsMeta {
             plan_sha256: "5a".repeat(32),

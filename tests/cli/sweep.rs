@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use impactlab_sweep::{Outcome, Rows, chunk_path, read_rows};
+use impactlab_sweep::{Outcome, Rows, chunk_path, read_rows, rows_bytes};
 use tempfile::TempDir;
 
 use crate::program::{json, ok, program};
@@ -212,6 +212,58 @@ fn a_plan_that_is_wrong_is_refused_with_its_place() {
         assert!(said.contains(expected), "{instead}: {said}");
         assert!(!out.exists(), "{instead}");
     }
+}
+
+/// A row whose vehicle was still moving, with a driver of whom nobody knew what he did, was like any other.
+#[test]
+fn a_row_of_a_request_has_the_kinds_of_its_caveats() {
+    let folder = TempDir::new().unwrap();
+    let mut question = program();
+    question.args(["simulate", "--vehicle", "reference-2000", "--speed", "20"]);
+    question.args(["--duration", "1", "--until-rest", "--print-request"]);
+    fs::write(folder.path().join("ask.json"), ok(question.output().unwrap())).unwrap();
+    let plan = "\
+question = \"request\"
+design = \"grid\"
+n = 1
+chunk = 2
+[request]
+file = \"ask.json\"
+outcomes = [{ name = \"x_m\", at = \"/end/x_m\", unit = \"m\" }]
+[vary.until_rest]
+at = \"/until_rest\"
+list = [false, true, 3]
+";
+    let sweep = planned(&folder, plan, "asked");
+    ok(run(&["run", shown(&sweep)]));
+    let chunk = fs::read(chunk_path(&sweep, 1)).unwrap();
+    let merged = merged(&sweep);
+    let rows = read_rows(&sweep.with_extension("parquet")).unwrap();
+    let expected = ["", "not_at_rest;driver_open", ""];
+    assert_eq!(rows.caveats.as_deref().unwrap(), expected);
+    assert!(rows.column("x_m").unwrap().values[2].is_nan(), "{:?}", rows.reasons);
+
+    // Chunks of a program that kept no caveats are merged as they are; beside others they are named.
+    for chunk in [0, 1] {
+        let path = chunk_path(&sweep, chunk);
+        let former = Rows { caveats: None, ..read_rows(&path).unwrap() };
+        fs::write(path, rows_bytes(&former).unwrap()).unwrap();
+    }
+    let out = sweep.with_extension("parquet");
+    ok(run(&["merge", shown(&sweep), "--out", shown(&out), "--overwrite"]));
+    let former = read_rows(&out).unwrap();
+    assert_eq!((former.caveats, former.outcomes.len()), (None, 1));
+    fs::write(chunk_path(&sweep, 1), chunk).unwrap();
+    fs::write(&out, &merged).unwrap();
+    let said = error(&["merge", shown(&sweep), "--out", shown(&out), "--overwrite"]);
+    assert!(said.contains("part-000001.parquet") && said.contains("other columns"), "{said}");
+    assert!(fs::read(&out).unwrap() == merged, "what was there is kept");
+
+    let plan = plan.replace("\"x_m\"", "\"caveats\"");
+    let file = folder.path().join("named.toml");
+    fs::write(&file, plan).unwrap();
+    let said = error(&["plan", shown(&file), "--out", shown(&folder.path().join("named"))]);
+    assert!(said.contains("request.outcomes") && said.contains("not \"caveats\""), "{said}");
 }
 
 /// “/home/ann/case/bad.toml:1:8: …” stood in the table, which goes to others.

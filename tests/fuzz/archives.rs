@@ -184,6 +184,7 @@ fn atlas() -> Vec<u8> {
         inputs: vec![column("esc")],
         outcomes: Outcome::ALL.iter().map(|outcome| column(outcome.name())).collect(),
         index: (0..60).collect(),
+        caveats: None,
         reasons: vec![String::new(); 60],
         meta: RowsMeta::default(),
     };

@@ -84,6 +84,7 @@ fn atlas() -> Atlas {
         inputs: columns.map(|(axis, values)| column(&axis.name, &axis.unit, values)).collect(),
         outcomes: Outcome::ALL.iter().map(outcome).collect(),
         index: (0..n as u64).collect(),
+        caveats: None,
         reasons: vec![String::new(); n],
         meta: RowsMeta {
             plan_sha256: "ab".repeat(32),

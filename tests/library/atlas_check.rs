@@ -75,7 +75,8 @@ fn answered(plan: &Plan, shift: f64) -> Vec<Rows> {
             other if other.is_probability() => 0.0,
             _ => 1.0,
         };
-        Row { index, inputs, outcomes: Ok(Outcome::ALL.iter().map(outcome).collect()) }
+        let outcomes = Ok(Outcome::ALL.iter().map(outcome).collect());
+        Row { index, inputs, outcomes, caveats: String::new() }
     };
     let chunk = |chunk: u64| {
         let rows: Vec<Row> = plan.rows_of(chunk).map(row).collect();

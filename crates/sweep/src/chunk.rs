@@ -15,11 +15,11 @@ use parquet::basic::{
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::KeyValue;
+use parquet::file::metadata::{FileMetaData, KeyValue};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{ColumnPath, PrimitiveTypeBuilder, Type, TypePtr};
+use parquet::schema::types::{ColumnDescPtr, ColumnPath, PrimitiveTypeBuilder, Type, TypePtr};
 
 use crate::rows::{Column, Rows, RowsMeta};
 use crate::{Plan, SweepError};
@@ -27,6 +27,9 @@ use impactlab_core::data::open_file;
 
 /// Column of the numbers of the rows.
 const ROW: &str = "row";
+
+/// Column of what restricts the answers of rows.
+pub(crate) const CAVEATS: &str = "caveats";
 
 /// Column of the reasons of rows that failed.
 const REASON: &str = "reason";
@@ -94,9 +97,11 @@ impl RowsWriter {
         for column in rows.columns() {
             put::<DoubleType>(&mut group, &column.values)?;
         }
-        let reasons: Vec<ByteArray> =
-            rows.reasons.iter().map(|reason| ByteArray::from(reason.as_str())).collect();
-        put::<ByteArrayType>(&mut group, &reasons)?;
+        for texts in rows.caveats.iter().chain([&rows.reasons]) {
+            let texts: Vec<ByteArray> =
+                texts.iter().map(|text| ByteArray::from(text.as_str())).collect();
+            put::<ByteArrayType>(&mut group, &texts)?;
+        }
         group.close()?;
         self.writer.flush().map_err(|error| ParquetError::External(Box::new(error)))?;
         Ok(self.buffer.take())
@@ -139,10 +144,12 @@ fn schema(rows: &Rows) -> Result<TypePtr, ParquetError> {
     for column in rows.columns() {
         fields.push(Arc::new(required(&column.name, PhysicalType::DOUBLE).build()?));
     }
-    let text = required(REASON, PhysicalType::BYTE_ARRAY)
-        .with_converted_type(ConvertedType::UTF8)
-        .with_logical_type(Some(LogicalType::String));
-    fields.push(Arc::new(text.build()?));
+    for name in rows.caveats.as_ref().map(|_| CAVEATS).into_iter().chain([REASON]) {
+        let text = required(name, PhysicalType::BYTE_ARRAY)
+            .with_converted_type(ConvertedType::UTF8)
+            .with_logical_type(Some(LogicalType::String));
+        fields.push(Arc::new(text.build()?));
+    }
     Ok(Arc::new(Type::group_type_builder("rows").with_fields(fields).build()?))
 }
 
@@ -172,6 +179,9 @@ fn properties(rows: &Rows) -> Result<WriterProperties, ParquetError> {
         .set_key_value_metadata(Some(pairs))
         .set_column_encoding(ColumnPath::from(ROW), Encoding::DELTA_BINARY_PACKED)
         .set_column_dictionary_enabled(ColumnPath::from(REASON), true);
+    if rows.caveats.is_some() {
+        builder = builder.set_column_dictionary_enabled(ColumnPath::from(CAVEATS), true);
+    }
     for column in rows.columns() {
         let path = ColumnPath::new(vec![column.name.clone()]);
         builder = builder.set_column_encoding(path, Encoding::BYTE_STREAM_SPLIT);
@@ -189,33 +199,53 @@ pub fn read_rows(path: &Path) -> Result<Rows, SweepError> {
     read_file(file).map_err(|error| wrong(error.to_string()))
 }
 
+fn refused(what: &str) -> ParquetError {
+    ParquetError::General(what.to_owned())
+}
+
+/// What a table says of itself.
+struct Stated {
+    /// Units of the columns of numbers, by their names.
+    units: BTreeMap<String, String>,
+    /// Names of the inputs.
+    inputs: Vec<String>,
+    meta: RowsMeta,
+}
+
+impl Stated {
+    fn read(metadata: &FileMetaData) -> Result<Self, ParquetError> {
+        let pairs = metadata.key_value_metadata().into_iter().flatten();
+        let pairs: BTreeMap<&str, &str> =
+            pairs.filter_map(|it| Some((it.key.as_str(), it.value.as_deref()?))).collect();
+        let stated =
+            |key: &str| pairs.get(key).copied().ok_or_else(|| refused(&format!("no {key}")));
+        let json = |error: serde_json::Error| ParquetError::External(Box::new(error));
+        let meta = RowsMeta {
+            plan_sha256: stated("plan_sha256")?.to_owned(),
+            program: stated("program")?.to_owned(),
+            chunk: match stated("chunk")? {
+                "all" => None,
+                chunk => {
+                    let number = chunk.parse().ok();
+                    Some(number.ok_or_else(|| refused("a chunk without a number"))?)
+                }
+            },
+            networks: serde_json::from_str(stated("networks")?).map_err(json)?,
+        };
+        let units = serde_json::from_str(stated("units")?).map_err(json)?;
+        let inputs = serde_json::from_str(stated("inputs")?).map_err(json)?;
+        Ok(Self { units, inputs, meta })
+    }
+}
+
 fn read_file(file: File) -> Result<Rows, ParquetError> {
-    let refused = |what: &str| ParquetError::General(what.to_owned());
     let reader = SerializedFileReader::new(file)?;
     let metadata = reader.metadata().file_metadata();
     let n_rows = metadata.num_rows();
     if !(0..=MOST_ROWS).contains(&n_rows) {
         return Err(refused(&format!("{n_rows} rows, expected at most {MOST_ROWS}")));
     }
-    let pairs = metadata.key_value_metadata().into_iter().flatten();
-    let pairs: BTreeMap<&str, &str> =
-        pairs.filter_map(|it| Some((it.key.as_str(), it.value.as_deref()?))).collect();
-    let stated = |key: &str| pairs.get(key).copied().ok_or_else(|| refused(&format!("no {key}")));
-    let json = |error: serde_json::Error| ParquetError::External(Box::new(error));
-    let units: BTreeMap<String, String> = serde_json::from_str(stated("units")?).map_err(json)?;
-    let input_names: Vec<String> = serde_json::from_str(stated("inputs")?).map_err(json)?;
-    let meta = RowsMeta {
-        plan_sha256: stated("plan_sha256")?.to_owned(),
-        program: stated("program")?.to_owned(),
-        chunk: match stated("chunk")? {
-            "all" => None,
-            chunk => {
-                let number = chunk.parse().ok();
-                Some(number.ok_or_else(|| refused("a chunk without a number"))?)
-            }
-        },
-        networks: serde_json::from_str(stated("networks")?).map_err(json)?,
-    };
+    let Stated { units, inputs: input_names, meta } = Stated::read(metadata)?;
     let schema = metadata.schema_descr();
     let names: Vec<String> =
         schema.columns().iter().map(|column| column.name().to_owned()).collect();
@@ -225,13 +255,18 @@ fn read_file(file: File) -> Result<Rows, ParquetError> {
     if !is_rows || names.len() > MOST_COLUMNS {
         return Err(refused("other columns than those of a sweep"));
     }
-    let n_numbers = names.len() - 2;
+    let is_of_caveats = |column: &ColumnDescPtr| {
+        column.name() == CAVEATS && column.physical_type() == PhysicalType::BYTE_ARRAY
+    };
+    // Tables of former programs have none.
+    let has_caveats = schema.columns().iter().nth_back(1).is_some_and(is_of_caveats);
+    let n_numbers = names.len() - 2 - usize::from(has_caveats);
     if n_rows.saturating_mul(n_numbers as i64) > MOST_NUMBERS {
         return Err(refused("more numbers than are read at once; read its chunks one by one"));
     }
     let mut index: Vec<i64> = Vec::new();
     let mut numbers: Vec<Vec<f64>> = vec![Vec::new(); n_numbers];
-    let mut reasons: Vec<ByteArray> = Vec::new();
+    let (mut caveats, mut reasons): (Vec<ByteArray>, Vec<ByteArray>) = (Vec::new(), Vec::new());
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let left = n_rows - index.len() as i64;
@@ -241,22 +276,30 @@ fn read_file(file: File) -> Result<Rows, ParquetError> {
         for (idx, values) in numbers.iter_mut().enumerate() {
             take::<DoubleType>(&*group, idx + 1, n, values)?;
         }
-        take::<ByteArrayType>(&*group, n_numbers + 1, n, &mut reasons)?;
+        if has_caveats {
+            take::<ByteArrayType>(&*group, n_numbers + 1, n, &mut caveats)?;
+        }
+        take::<ByteArrayType>(&*group, names.len() - 1, n, &mut reasons)?;
     }
     if index.len() as i64 != n_rows {
         return Err(refused("fewer rows than it says"));
     }
     let index: Option<Vec<u64>> = index.into_iter().map(|row| u64::try_from(row).ok()).collect();
     let index = index.ok_or_else(|| refused("a row with a negative number"))?;
-    let reasons = reasons.iter().map(|reason| reason.as_utf8().map(str::to_owned));
-    let reasons = reasons.collect::<Result<Vec<String>, _>>()?;
+    let caveats = has_caveats.then(|| texts(&caveats)).transpose()?;
+    let reasons = texts(&reasons)?;
     let numbers = names.get(1..=n_numbers).unwrap_or_default().iter().zip(numbers);
     let columns = numbers.map(|(name, values)| {
         let unit = units.get(name).cloned().unwrap_or_else(|| "1".to_owned());
         Column { name: name.clone(), unit, values }
     });
     let (inputs, outcomes) = columns.partition(|column| input_names.contains(&column.name));
-    Ok(Rows { inputs, outcomes, index, reasons, meta })
+    Ok(Rows { inputs, outcomes, index, caveats, reasons, meta })
+}
+
+/// A column of texts.
+fn texts(column: &[ByteArray]) -> Result<Vec<String>, ParquetError> {
+    column.iter().map(|text| text.as_utf8().map(str::to_owned)).collect()
 }
 
 /// Reads one column of a row group.
@@ -266,16 +309,15 @@ fn take<T: DataType>(
     n: usize,
     values: &mut Vec<T::T>,
 ) -> Result<(), ParquetError> {
-    let refused = |what: &str| Err(ParquetError::General(what.to_owned()));
     let reader: ColumnReader = group.get_column_reader(idx)?;
     let Some(mut reader): Option<ColumnReaderImpl<T>> = T::get_column_reader(reader) else {
-        return refused("a column of another type");
+        return Err(refused("a column of another type"));
     };
     let before = values.len();
     while values.len() - before < n {
         let (_, read, _) = reader.read_records(n - (values.len() - before), None, None, values)?;
         if read == 0 {
-            return refused("a column that ends early");
+            return Err(refused("a column that ends early"));
         }
     }
     Ok(())
@@ -336,6 +378,7 @@ mod tests {
             inputs: vec![column("speed_m_s", "m/s", vec![1.5, 2.5, -0.0])],
             outcomes: vec![column("x_m", "m", vec![1e300, f64::NAN, 3.0])],
             index: vec![4, 5, 6],
+            caveats: Some(vec!["wheel_lift;not_at_rest".to_owned(), String::new(), String::new()]),
             reasons: vec![String::new(), "the vehicles do not meet".to_owned(), String::new()],
             meta: RowsMeta {
                 plan_sha256: "ab".to_owned(),
@@ -359,9 +402,27 @@ mod tests {
         };
         assert_eq!(bits(&read), bits(&rows()));
         assert_eq!((&read.index, &read.reasons), (&rows().index, &rows().reasons));
+        assert_eq!(read.caveats, rows().caveats);
         assert_eq!((read.meta.clone(), read.n_failed()), (rows().meta, 1));
         assert_eq!(read.inputs[0].unit, "m/s");
         assert_eq!(read.column("x_m").map(|column| column.values[2]), Some(3.0));
+    }
+
+    #[test]
+    fn a_table_without_caveats_is_read_as_it_is() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        let former = Rows { caveats: None, ..rows() };
+        std::fs::write(&path, rows_bytes(&former).unwrap()).unwrap();
+        let read = read_rows(&path).unwrap();
+        assert_eq!((read.caveats, read.reasons), (None, former.reasons));
+        assert_eq!(read.outcomes.len(), 1);
+        // An outcome of that name, as a former program had it, is one.
+        let mut named = Rows { caveats: None, ..rows() };
+        named.outcomes[0].name = CAVEATS.to_owned();
+        std::fs::write(&path, rows_bytes(&named).unwrap()).unwrap();
+        let read = read_rows(&path).unwrap();
+        assert_eq!((read.caveats, read.outcomes[0].values[2]), (None, 3.0));
     }
 
     #[test]

@@ -56,6 +56,10 @@ pub fn merge(
         };
         for chunk in 0..n_chunks {
             let rows = read_chunk(folder, &plan, chunk).map_err(&mut aside)?;
+            if rows.caveats.is_some() != like.caveats.is_some() {
+                let what = format!("it has other columns than {}", chunk_path(folder, 0).display());
+                return Err(aside(SweepError::Rows { path: chunk_path(folder, chunk), what }));
+            }
             let bytes = writer.add(&rows).map_err(|error| aside(error.into()))?;
             file.write_all(&bytes)?;
             report.chunks += 1;

@@ -28,6 +28,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::SweepError;
+use crate::chunk::CAVEATS;
 use crate::pit::PitInput;
 use crate::plan::{
     Design, FORMAT, FORMAT_OF_FILES, PickedOutcome, PitQuestion, Plan, RequestQuestion,
@@ -197,9 +198,20 @@ impl Plan {
         plan.checked(file)
     }
 
+    /// A column of the name of the one that the rows of a request have for their caveats. Plans of former
+    /// programs may have it.
+    fn fault_of_caveats(&self) -> Option<(String, String)> {
+        let expected = || format!("a name that no other column has, not {CAVEATS:?}");
+        if self.vary.iter().any(|vary| vary.name == CAVEATS) {
+            return Some((format!("vary.{CAVEATS}"), expected()));
+        }
+        let is_outcome = self.outcomes().iter().any(|(name, _)| name == CAVEATS);
+        is_outcome.then(|| ("request.outcomes".to_owned(), expected()))
+    }
+
     /// The plan with the files that its rows read, if nothing is wrong with it.
     fn checked(mut self, file: TomlFile<'_>) -> Result<Self, SweepError> {
-        if let Some((key, expected)) = self.fault() {
+        if let Some((key, expected)) = self.fault().or_else(|| self.fault_of_caveats()) {
             let mut inner = DISTRIBUTIONS.iter().map(|name| format!("{key}.{name}"));
             let inner = inner.find(|key| file.contains(key));
             let value = if file.contains(&key) { "this" } else { "missing" };

@@ -1,10 +1,12 @@
 //! The answer of one row.
 
 use std::cmp::Reverse;
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::SweepError;
@@ -15,6 +17,7 @@ use crate::vary::listed;
 use impactlab_core::data::Outcome as Ended;
 use impactlab_core::data::write::with_name_for_path;
 use impactlab_core::error_chain;
+use impactlab_core::uncertainty::{CaveatKind, Caveats};
 use impactlab_networks::force::ForceModel;
 use impactlab_networks::response::ResponseModel;
 use impactlab_study::analysis::{PairRowQuestion, pair_row};
@@ -32,6 +35,9 @@ pub struct Row {
     pub inputs: Vec<f64>,
     /// The outcomes, or why there are none.
     pub outcomes: Result<Vec<f64>, String>,
+    /// The kinds of what restricts the answer of a request, each once, as the answer has them in JSON, with `;`
+    /// between them; empty if nothing does.
+    pub caveats: String,
 }
 
 /// What answers the rows of a plan: networks and vehicles, read once.
@@ -72,14 +78,19 @@ impl<'a> Answerer<'a> {
     /// Answers a row, which follows from (plan, seed, row) alone.
     pub fn row(&self, index: u64) -> Row {
         let inputs = self.plan.inputs(index);
-        let outcomes = match &self.kind {
+        let answered = match &self.kind {
             Kind::Pit { question, vehicles, force, response } => {
-                self.pit((*question, vehicles), &inputs, force, response)
+                let outcomes = self.pit((*question, vehicles), &inputs, force, response);
+                outcomes.map(|outcomes| (outcomes, String::new()))
             }
             Kind::Request { question, library } => self.asked(question, library, &inputs),
         };
         let inputs = inputs.values.iter().map(|value| value.number).collect();
-        Row { index, inputs, outcomes: outcomes.map_err(shortened) }
+        let (outcomes, caveats) = match answered {
+            Ok((outcomes, caveats)) => (Ok(outcomes), caveats),
+            Err(reason) => (Err(shortened(reason)), String::new()),
+        };
+        Row { index, inputs, outcomes, caveats }
     }
 
     fn pit(
@@ -120,12 +131,13 @@ impl<'a> Answerer<'a> {
         }
     }
 
+    /// The outcomes of a request, and the kinds of what restricts its answer.
     fn asked(
         &self,
         question: &RequestQuestion,
         library: &Library,
         inputs: &RowInputs,
-    ) -> Result<Vec<f64>, String> {
+    ) -> Result<(Vec<f64>, String), String> {
         let request = with_inputs(question, self.plan, inputs);
         let request: Request =
             serde_json::from_value(request).map_err(|error| error_chain(&error))?;
@@ -143,8 +155,22 @@ impl<'a> Answerer<'a> {
             Some(value) => value.as_f64().ok_or_else(|| format!("{} is no number", outcome.at)),
             None => Err(format!("the answer has no {}", outcome.at)),
         });
-        picked.collect()
+        let picked = picked.collect::<Result<Vec<f64>, String>>()?;
+        let caveats = caveats_of(&report).map_err(|error| error_chain(&error))?;
+        Ok((picked, caveats))
     }
+}
+
+/// The kinds of what restricts an answer, each once and in one order, with `;` between them.
+fn caveats_of(report: &Value) -> Result<String, serde_json::Error> {
+    let caveats = Caveats::deserialize(report)?;
+    let kinds: BTreeSet<CaveatKind> =
+        caveats.restrictions().into_iter().map(|caveat| caveat.kind).collect();
+    let keys: Result<Vec<Value>, serde_json::Error> =
+        kinds.into_iter().map(serde_json::to_value).collect();
+    let keys = keys?;
+    let keys: Vec<&str> = keys.iter().filter_map(Value::as_str).collect();
+    Ok(keys.join(";"))
 }
 
 /// The request of the first row, and the same with each text that is varied, which may name a file.

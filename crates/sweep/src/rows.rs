@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use crate::Plan;
 use crate::row::Row;
+use crate::{Plan, SweptQuestion};
 
 /// Rows of a sweep, in columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,9 @@ pub struct Rows {
     pub outcomes: Vec<Column>,
     /// Numbers of the rows.
     pub index: Vec<u64>,
+    /// Of each row what restricts its answer, as [`Row::caveats`] has it; `None` of a pit, whose outcomes say it,
+    /// and in tables of programs that did not keep it.
+    pub caveats: Option<Vec<String>>,
     /// Why a row failed; empty if it did not.
     pub reasons: Vec<String>,
     /// Where the rows come from.
@@ -63,11 +66,16 @@ impl Rows {
         let outcomes = outcomes.into_iter().enumerate();
         let outcomes =
             outcomes.map(|(idx, (name, unit))| Column { name, unit, values: outcome(idx) });
+        let caveats = match plan.question {
+            SweptQuestion::Pit(_) => None,
+            SweptQuestion::Request(_) => Some(rows.iter().map(|row| row.caveats.clone()).collect()),
+        };
         let reason = |row: &Row| row.outcomes.as_ref().err().cloned().unwrap_or_default();
         Self {
             inputs: inputs.collect(),
             outcomes: outcomes.collect(),
             index: rows.iter().map(|row| row.index).collect(),
+            caveats,
             reasons: rows.iter().map(reason).collect(),
             meta: RowsMeta {
                 plan_sha256: plan.sha256(),

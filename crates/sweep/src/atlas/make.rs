@@ -344,6 +344,7 @@ pub(super) mod test_rows {
                 .map(|(outcome, values)| named(outcome.name(), outcome.unit(), values))
                 .collect(),
             index: (0..n).collect(),
+            caveats: None,
             reasons: vec![String::new(); n as usize],
             meta: RowsMeta {
                 plan_sha256: "ab".repeat(32),

@@ -380,6 +380,7 @@ mod tests {
             inputs: vec![column("a", first), column("b", second)],
             outcomes: vec![column(Outcome::TravelM.name(), travel)],
             index: (0..n as u64).collect(),
+            caveats: None,
             reasons: vec![String::new(); n],
             meta: RowsMeta::default(),
         }

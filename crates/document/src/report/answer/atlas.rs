@@ -216,6 +216,7 @@ mod tests {
             ],
             outcomes: Outcome::ALL.iter().map(|of| column(of.name(), &|_| 1.0)).collect(),
             index: (0..n).collect(),
+            caveats: None,
             reasons: vec![String::new(); n as usize],
             meta: RowsMeta::default(),
         };
