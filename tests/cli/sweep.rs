@@ -511,8 +511,16 @@ fn a_plan_of_another_program_or_of_another_file_is_not_run() {
     let other = folder.path().join("other.toml");
     fs::write(&other, PIT.replace("seed = 5", "seed = 6")).unwrap();
     let said = error(&["plan", shown(&other), "--out", shown(&sweep)]);
-    assert!(said.contains("plan.json: exists already"), "{said}");
+    // It told of an --overwrite that there is not.
+    assert!(said.contains("plan.json: is another plan"), "{said}");
+    assert!(said.contains("another folder") && !said.contains("--overwrite"), "{said}");
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    // A folder that cannot be made “cannot be read”.
+    let said = error(&["plan", shown(&other), "--out", shown(&other)]);
+    assert!(said.contains("other.toml: is no folder"), "{said}");
+    let below = other.join("below");
+    let said = error(&["plan", shown(&other), "--out", shown(&below)]);
+    assert!(said.contains("cannot be written"), "{said}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Why a sweep cannot be planned, run or merged.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use impactlab_core::data::write::WriteError;
 use impactlab_core::data::{DataError, TomlError};
 use impactlab_study::StudyError;
 
@@ -53,6 +54,16 @@ pub enum SweepError {
         planned: String,
         /// As it is here.
         present: String,
+    },
+    /// The folder holds another plan, whose rows may be there or under way.
+    #[error(
+        "{}: is another plan, or of another version of the program, and is not replaced; make this one in \
+         another folder",
+        path.display()
+    )]
+    PlanThere {
+        /// The file.
+        path: PathBuf,
     },
     /// A file that the question reads has gone or cannot be read.
     #[error("{}: cannot be read", path.display())]
@@ -113,6 +124,18 @@ pub enum SweepError {
     /// The work was cancelled. What is finished is kept.
     #[error("cancelled; what is finished is kept")]
     Cancelled,
+}
+
+impl SweepError {
+    /// The folder of a sweep cannot be made.
+    pub(crate) fn no_folder(folder: &Path, source: std::io::Error) -> Self {
+        let path = folder.to_owned();
+        let error = match folder.exists() && !folder.is_dir() {
+            true => WriteError::NotAFolder { path },
+            false => WriteError::Io { path, source },
+        };
+        DataError::from(error).into()
+    }
 }
 
 impl From<StudyError> for SweepError {

@@ -15,7 +15,8 @@ use crate::points::point;
 use crate::vary::{Distribution, InputValue, Vary, listed, unit_fault};
 use crate::{Outcome, SweepError};
 use impactlab_core::collision::Scenario;
-use impactlab_core::data::{Existing, MAX_SETTINGS_BYTES, read_utf8, write_atomically};
+use impactlab_core::data::write::WriteError;
+use impactlab_core::data::{DataError, Existing, MAX_SETTINGS_BYTES, read_utf8, write_atomically};
 use impactlab_core::numerics::{random_stream, sha256_hex};
 use impactlab_core::program;
 use impactlab_core::vehicle::built_in_vehicle;
@@ -291,18 +292,20 @@ impl Plan {
     /// Writes the plan into a folder, which is made if it is not there.
     ///
     /// # Errors
-    /// [`SweepError::Data`]: above all where there is another plan already.
+    /// [`SweepError::PlanThere`] where there is another plan already, [`SweepError::Data`].
     pub fn write(&self, folder: &Path) -> Result<(), SweepError> {
-        std::fs::create_dir_all(folder)
-            .map_err(|source| SweepError::Input { path: folder.to_owned(), source })?;
+        std::fs::create_dir_all(folder).map_err(|source| SweepError::no_folder(folder, source))?;
         let path = folder.join(PLAN_FILE);
         if Self::stored(folder).is_ok_and(|there| there == *self) {
             return Ok(());
         }
         let text = serde_json::to_string_pretty(&self.with_paths_ended_at(folder)?)
             .map_err(|source| SweepError::NoPlan { path: path.clone(), source })?;
-        write_atomically(&path, Existing::Refuse, |out| writeln!(out, "{text}"))?;
-        Ok(())
+        let written = write_atomically(&path, Existing::Refuse, |out| writeln!(out, "{text}"));
+        written.map_err(|error| match error {
+            DataError::Write(WriteError::Exists { path }) => SweepError::PlanThere { path },
+            error => error.into(),
+        })
     }
 
     /// Checks that program, networks and files are those of the plan.
