@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
+use pyo3::types::{PyDict, PyMapping, PyString};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -135,13 +135,18 @@ fn text_of(request: &Bound<'_, PyAny>) -> PyResult<String> {
     py.import("json")?.call_method("dumps", (request,), Some(&settings))?.extract()
 }
 
-/// What JSON has no type for: a number or an array of numpy, or a path.
+/// What JSON has no type for: a number or an array of numpy, a mapping that is no dictionary, or a path.
 #[pyfunction]
 fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    match value.hasattr("tolist")? {
-        true => value.call_method0("tolist"),
-        false => value.py().import("os")?.call_method1("fspath", (value,)),
+    let py = value.py();
+    if value.hasattr("tolist")? {
+        return value.call_method0("tolist");
     }
+    if value.is_instance_of::<PyMapping>() {
+        return py.get_type::<PyDict>().call1((value,));
+    }
+    // A path of bytes, which JSON has no type for either, is text after that.
+    py.import("os")?.call_method1("fsdecode", (value,))
 }
 
 /// What is written to JSON, in objects of Python.

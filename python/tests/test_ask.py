@@ -2,7 +2,9 @@
 
 import json
 import shutil
+from collections import ChainMap
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -59,6 +61,17 @@ def test_numbers_of_numpy_and_paths_are_taken() -> None:
         "source": {"scenario": {"scenario": {"file": Path("pit-right-rear")}}},
     }
     assert impactlab.ask(question) == impactlab.ask({**SIMULATION, "friction": 0.75, "seed": 3})
+
+
+def test_mappings_that_are_no_dictionaries_and_paths_of_bytes_are_taken() -> None:
+    question = MappingProxyType(
+        {
+            **SIMULATION,
+            "source": {"scenario": ChainMap({"scenario": {"file": b"pit-right-rear"}})},
+        }
+    )
+    assert impactlab.ask(question) == impactlab.ask(SIMULATION)
+    assert impactlab.simulate(question).report == impactlab.ask(SIMULATION)
 
 
 def test_the_kind_of_a_question_need_not_be_said() -> None:
