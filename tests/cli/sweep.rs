@@ -154,7 +154,7 @@ fn a_broken_chunk_is_found_and_computed_anew() {
     assert_eq!(ok(run(&["status", shown(&sweep), "--missing", "--stride", "1"])), "0\n");
     fs::remove_file(chunk_path(&sweep, 0)).unwrap();
     let said = error(&["merge", shown(&sweep), "--out", shown(&out)]);
-    assert!(said.contains("chunks are missing: 0;"), "{said}");
+    assert!(said.contains("sweep: chunks are missing: 0;"), "{said}");
 }
 
 /// Hours of rows were lost where a plan was made anew in the folder of another one.

@@ -113,9 +113,20 @@ pub enum SweepError {
     /// Rows cannot be written as a table.
     #[error("the rows cannot be written as a table")]
     Encode(#[from] parquet::errors::ParquetError),
+    /// A batch file cannot say a path.
+    #[error("{}: a name that is no UTF-8 text cannot stand in a batch file; choose another", path.display())]
+    NoText {
+        /// The folder of the sweep, or the program.
+        path: PathBuf,
+    },
     /// Chunks are missing.
-    #[error("chunks are missing: {missing}; run them first, such as with --chunks {first}")]
+    #[error(
+        "{}: chunks are missing: {missing}; run them first, such as with --chunks {first}",
+        folder.display()
+    )]
     Missing {
+        /// The folder of the sweep.
+        folder: PathBuf,
         /// Which, as an array expression.
         missing: String,
         /// The first of them.

@@ -41,7 +41,7 @@ pub fn merge(
     let missing: Vec<u64> = (0..n_chunks).filter(is_missing).collect();
     if let Some(first) = missing.first() {
         let (missing, first) = (array_expression(&missing), first.to_string());
-        return Err(SweepError::Missing { missing, first });
+        return Err(SweepError::Missing { folder: folder.to_owned(), missing, first });
     }
     let parts = (0..n_chunks).map(|chunk| chunk_path(folder, chunk));
     check_inputs(out, &parts.chain([folder.join(PLAN_FILE)]).collect::<Vec<_>>())?;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::Plan;
+use crate::{Plan, SweepError};
 
 /// Most tasks of an array: one less than what Slurm allows where nobody has set it.
 pub const MOST_TASKS: u64 = 1000;
@@ -15,12 +15,15 @@ pub fn n_tasks(plan: &Plan) -> u64 {
 /// The batch file that runs the chunks of a plan as a job array and merges them.
 ///
 /// - `folder`: of the plan, and `program`: as the nodes find them.
-pub fn slurm_script(plan: &Plan, folder: &Path, program: &Path) -> String {
+///
+/// # Errors
+/// [`SweepError::NoText`] for a path that is no text: another one would stand in the file.
+pub fn slurm_script(plan: &Plan, folder: &Path, program: &Path) -> Result<String, SweepError> {
     let (tasks, chunks) = (n_tasks(plan), plan.n_chunks());
     let name = name_of_job(&plan.name);
-    let (folder, program) = (quoted(&folder.to_string_lossy()), quoted(&program.to_string_lossy()));
+    let (folder, program) = (word_of(folder)?, word_of(program)?);
     let last = tasks - 1;
-    format!(
+    Ok(format!(
         "\
 #!/bin/bash
 # A sweep of {rows} rows in {chunks} chunks, by {tasks} tasks.
@@ -64,7 +67,7 @@ exec \"$impactlab\" sweep run \"$plan\" --array --stride {tasks}
 ",
         rows = plan.n_rows(),
         doubled = 2 * tasks,
-    )
+    ))
 }
 
 /// A name that Slurm takes.
@@ -73,6 +76,12 @@ fn name_of_job(name: &str) -> String {
     let name: String = name.chars().map(plain).take(40).collect();
     let name = name.trim_matches('-');
     if name.is_empty() { "sweep".to_owned() } else { name.to_owned() }
+}
+
+/// A path as one word of a shell.
+fn word_of(path: &Path) -> Result<String, SweepError> {
+    let no_text = || SweepError::NoText { path: path.to_owned() };
+    path.to_str().map(quoted).ok_or_else(no_text)
 }
 
 /// A text as one word of a shell.
@@ -90,5 +99,20 @@ mod tests {
         assert_eq!(name_of_job("PIT at 35 mph!"), "pit-at-35-mph");
         assert_eq!(name_of_job("\n#SBATCH"), "sbatch");
         assert_eq!(name_of_job("…"), "sweep");
+    }
+
+    /// The batch file named another folder, in which no task found a plan.
+    #[cfg(unix)]
+    #[test]
+    fn a_path_that_is_no_text_is_refused() {
+        use std::os::unix::ffi::OsStrExt as _;
+
+        let folder = Path::new(std::ffi::OsStr::from_bytes(b"/sweeps/f\xff"));
+        let refused = word_of(folder);
+        assert!(
+            matches!(&refused, Err(SweepError::NoText { path }) if path == folder),
+            "{refused:?}"
+        );
+        assert_eq!(word_of(Path::new("/sweeps/a b")).unwrap(), "'/sweeps/a b'");
     }
 }

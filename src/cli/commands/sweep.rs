@@ -292,7 +292,7 @@ fn script(args: &ScriptArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
         Some(program) => program.clone(),
         None => std::env::current_exe().unwrap_or_else(|_| PathBuf::from("impactlab")),
     };
-    let text = slurm_script(&plan, &folder, &program);
+    let text = slurm_script(&plan, &folder, &program)?;
     console.print(&PrintedScript { tasks: n_tasks(&plan), script: &text }, |out| {
         out.write_all(text.as_bytes())
     })?;
