@@ -157,6 +157,9 @@ fn an_atlas_is_shown_as_two_maps_with_one_scale_and_the_case_in_one_of_them() {
     // 54 km/h are in the first bin.
     let text = without.text([0, 1], UnitSystem::Si);
     assert!(text.contains("25.0 % ± ") && text.contains("in 80 runs"), "{text}");
+    // The pane said it, and the picture that is saved did not.
+    let told = without.figure.caveats.text().expect("what restricts it");
+    assert!(told.contains("other networks") && told.contains("(force, response)"), "{told}");
     assert!(harness.query_all_by_label_contains("The case at hand: ").next().is_some());
     assert!(harness.query_all_by_label_contains("not validated").next().is_some());
     save(&mut harness, "atlas.png");
