@@ -142,13 +142,15 @@ impl State {
             _ => self.project.simulate.ending.as_ref(),
         };
         let after = format!("{}, {until}", ending_in_words(ending));
+        let is_alone = subject.is_some() && self.project.simulate.source.is_alone();
+        let from = if is_alone { "From the start" } else { "After the impact" };
         let pane = match subject {
             Some(Subject::Scenario) => Pane::Scenario,
             _ => Pane::Vehicle,
         };
         [
             ContentsEntry::new(Group::Scene, "Road", road, Command::Show(pane)),
-            ContentsEntry::new(Group::Scene, "After the impact", after, Command::Show(pane)),
+            ContentsEntry::new(Group::Scene, from, after, Command::Show(pane)),
         ]
     }
 

@@ -5,7 +5,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Group, Output, Pane, Subject, VariantCommand, Workspace};
 use impactlab_core::vehicle::{Braking, DataSheet, Ending, LibraryVehicle, SheetQuantity};
-use impactlab_study::{MotionSource, VehicleChoice};
+use impactlab_study::{Drive, MotionSource, VehicleChoice};
 
 use crate::harness::{
     apply, ask_few_draws, is_forecast, is_idle, open, open_with, open_with_few_draws, state,
@@ -117,6 +117,17 @@ fn the_contents_name_what_is_missing_and_lead_to_it() {
     let contents = contents_of(&harness);
     let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();
     assert!(impact.missing.as_ref().unwrap().contains("choose a scenario"), "{impact:?}");
+    // A car that only steers comes from no impact.
+    let fishhook = Drive { fishhook: true, ..Drive::default() };
+    harness.state_mut().state_mut().project.simulate.source = MotionSource::Drive(fishhook);
+    let contents = contents_of(&harness);
+    let scene: Vec<&str> = contents
+        .iter()
+        .filter(|entry| entry.group == Group::Scene)
+        .map(|entry| &*entry.label)
+        .collect();
+    assert!(scene.contains(&"From the start"), "{scene:?}");
+    assert!(!scene.contains(&"After the impact"), "{scene:?}");
 }
 
 /// A line that came with the answer pushed them away from the pointer.

@@ -46,10 +46,7 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Whose ending is edited, and from when on: a vehicle on which no force acts was not struck.
 fn whose_ending(source: &MotionSource) -> &'static str {
-    match source {
-        MotionSource::Drive(drive) if drive.force.is_none() => "From the start: the vehicle",
-        _ => OF_STRUCK,
-    }
+    if source.is_alone() { "From the start: the vehicle" } else { OF_STRUCK }
 }
 
 /// The velocity with which the car of an open force of a finite-element run begins, m/s.

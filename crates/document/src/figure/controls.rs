@@ -10,8 +10,14 @@ use impactlab_core::vehicle::{BRAKE_TORQUES, DRIVE_TORQUES, Wheel};
 use impactlab_study::analysis::Analysis;
 
 /// What figures call both vehicles.
-pub(crate) const STRUCK: &str = collision::Role::Struck.label();
+const STRUCK: &str = collision::Role::Struck.label();
 pub(crate) const STRIKING: &str = collision::Role::Striking.label();
+
+/// What they call a vehicle that is driven and touches nothing.
+const ALONE: &str = "car";
+
+/// The axis of the brakes of each wheel of such a vehicle.
+pub(crate) const BRAKES_ALONE: &str = "Braking torque of each wheel (with ESC)";
 
 /// What a figure of the inputs to the wheels shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -67,6 +73,14 @@ impl WheelInput {
         }
     }
 
+    /// The same in a figure of an analysis: a vehicle that touches nothing is no struck one.
+    fn label_of(self, analysis: &Analysis) -> &'static str {
+        match self {
+            Self::StruckBrakes if analysis.is_alone() => BRAKES_ALONE,
+            _ => self.label(),
+        }
+    }
+
     fn quantity(self) -> Quantity {
         match self {
             Self::Steering => Quantity::Angle,
@@ -105,7 +119,7 @@ pub fn control_figure(
     units: UnitSystem,
 ) -> Option<Figure> {
     let curves = input.curves(&vehicles(analysis));
-    let y = Axis::shown(input.label(), input.quantity(), units);
+    let y = Axis::shown(input.label_of(analysis), input.quantity(), units);
     let axes = [Axis::shown("Time", Quantity::Time, units), y];
     let caveats = caveats.in_units(units);
     (!curves.is_empty()).then(|| curves_figure(analysis, axes, &curves).with_caveats(&caveats))
@@ -140,7 +154,7 @@ fn vehicles(analysis: &Analysis) -> Vec<DrivenVehicle<'_>> {
     let struck = analysis.simulation.as_ref().map(|motion| {
         let radius_m = analysis.vehicle.tires.rolling_radius_m;
         DrivenVehicle {
-            name: STRUCK,
+            name: if analysis.is_alone() { ALONE } else { STRUCK },
             role: Role::Simulation,
             style: LineStyle::Solid,
             motion: &motion.series,
@@ -357,9 +371,10 @@ mod tests {
         let analysis = analyse_drive("spin", setup, &settings).unwrap();
         let figures = figures(&analysis);
         let labels: Vec<&str> = figures.iter().map(|figure| &*figure.y.label).collect();
-        let expected = [WheelInput::Braking, WheelInput::StruckBrakes].map(WheelInput::label);
-        assert_eq!(labels, expected);
+        assert_eq!(labels, [WheelInput::Braking.label(), BRAKES_ALONE]);
         assert!(!names(&figures[1]).is_empty());
+        // Nothing has struck it.
+        assert_eq!(names(&figures[0]), ["car"]);
     }
 
     #[test]

@@ -27,7 +27,9 @@ pub use analysis::{
 };
 pub use atlas::{AtlasFigure, atlas_figure, sensitivity_figure, write_slice_csv};
 pub use calibration::{CoveragePoint, ParityPoint, coverage_figure, parity_figure, pit_figure};
-pub(crate) use controls::{STRIKING, STRUCK};
+#[cfg(test)]
+pub(crate) use controls::BRAKES_ALONE;
+pub(crate) use controls::STRIKING;
 pub use controls::{WheelInput, control_figure, control_figures, figure_readout};
 pub use export::write_figure_csv;
 use force::milliseconds;

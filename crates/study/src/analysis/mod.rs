@@ -212,6 +212,11 @@ impl Analysis {
         }
     }
 
+    /// Whether the car is driven and touches nothing: no force acts, and there is no other vehicle.
+    pub fn is_alone(&self) -> bool {
+        self.force.is_none() && self.struck.is_none() && self.striking.is_none()
+    }
+
     /// When the vehicles are in contact, s.
     ///
     /// - `end_s`: the end of a contact that lasts to the end of the motions.

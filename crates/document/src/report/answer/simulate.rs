@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use crate::figure::{
-    FigureElement, STRUCK, analysis_force_figure, analysis_motion_figure, control_figures,
-};
+use crate::figure::{analysis_force_figure, analysis_motion_figure, control_figures};
 use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::facts::{facts_table, facts_with_meaning, provenance_of};
@@ -30,7 +28,7 @@ pub(super) fn part(
     let vehicle = name_in_question(&report.vehicle, &answer.analysis.vehicle, wording);
     let name = wording.given_name(&report.name);
     let names = [("name", &*name), ("vehicle", &vehicle)];
-    let is_alone = is_alone(answer);
+    let is_alone = answer.analysis.is_alone();
     let ask = if is_alone { words.ask_drive } else { words.ask_simulate };
     let question = fill(ask, &names);
     let mut blocks = vec![Block::paragraph(question.clone())];
@@ -82,15 +80,6 @@ pub(super) fn part(
     }
 }
 
-/// Whether the car is driven and touches nothing.
-fn is_alone(answer: &SimulateAnswer) -> bool {
-    let report = &answer.report;
-    report.force.is_none()
-        && report.momentum.is_none()
-        && report.contacts.is_empty()
-        && answer.analysis.pair.is_none()
-}
-
 fn pictures(
     site: Option<&Path>,
     answer: &SimulateAnswer,
@@ -111,15 +100,11 @@ fn pictures(
     pictures.extend(force.map(|figure| PartPicture::figure(force_caption, figure)));
     let yaw_rate = analysis_motion_figure(analysis, caveats, Channel::YawRate, units);
     if !yaw_rate.elements.is_empty() {
-        let alone = is_alone(answer);
+        let alone = analysis.is_alone();
         let caption = if alone { words.yaw_rate_alone_picture } else { words.yaw_rate_picture };
         pictures.push(PartPicture::figure(caption.to_owned(), yaw_rate));
     }
-    pictures.extend(control_figures(analysis, caveats, units).into_iter().map(|mut figure| {
-        let struck = figure.elements.iter_mut().map(FigureElement::name_mut);
-        struck.filter(|name| is_alone(answer) && name.as_str() == STRUCK).for_each(|name| {
-            "car".clone_into(name);
-        });
+    pictures.extend(control_figures(analysis, caveats, units).into_iter().map(|figure| {
         let quantity = context.wording.term(&figure.y.label);
         let names = [("quantity", &*quantity)];
         PartPicture::figure(fill(words.controls_picture, &names), figure)

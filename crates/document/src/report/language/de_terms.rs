@@ -450,6 +450,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("Steer angle of the road wheels", "Lenkwinkel der Räder"),
     ("Braking torque of all wheels", "Bremsmoment aller Räder"),
     ("Drive torque of all wheels", "Antriebsmoment aller Räder"),
+    ("Braking torque of each wheel (with ESC)", "Bremsmoment jedes Rades (mit ESP)"),
     (
         "Braking torque of each wheel, struck vehicle (with ESC)",
         "Bremsmoment jedes Rades, gestoßenes Fahrzeug (mit ESP)",

@@ -114,7 +114,7 @@ fn caveat_label(language: Language, text: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{ReplayCurve, WheelInput};
+    use crate::figure::{BRAKES_ALONE, ReplayCurve, WheelInput};
     use crate::report::keys::bare;
     use impactlab_core::collision::{SCENARIO_PRESETS, Scenario};
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
@@ -167,7 +167,7 @@ mod tests {
         let latents = Latent::ALL.iter().map(|latent| latent.label());
         let quantities = ReconstructedQuantity::EVERY.iter().map(|quantity| quantity.label());
         let sheet = SheetQuantity::ALL.iter().map(|quantity| quantity.label());
-        let controls = WheelInput::ALL.into_iter().map(WheelInput::label);
+        let controls = WheelInput::ALL.into_iter().map(WheelInput::label).chain([BRAKES_ALONE]);
         let replayed = ReplayCurve::ALL.into_iter().map(ReplayCurve::label);
         let measures = Measure::all().map(Measure::label);
         let shown = controls.chain(replayed).chain(measures);

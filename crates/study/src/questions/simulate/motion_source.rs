@@ -73,6 +73,11 @@ impl MotionSource {
         }
     }
 
+    /// Whether the vehicle is driven and no force acts on it.
+    pub fn is_alone(&self) -> bool {
+        matches!(self, Self::Drive(drive) if drive.force.is_none())
+    }
+
     /// Checks every number of the source.
     pub(crate) fn check(&self) -> Result<(), StudyError> {
         match self {
