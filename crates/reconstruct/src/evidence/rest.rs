@@ -47,7 +47,7 @@ const HEADING_SIGMA: Sigma = Sigma::fixed(
     "±",
     ANGLE_SIGMA,
     0.035,
-    "2°, read off a sketch to scale or a photograph from above; assumed",
+    "2 deg, read off a sketch to scale or a photograph from above; assumed",
 );
 
 /// Where a car came to rest.

@@ -36,7 +36,7 @@ const HEADING_SIGMA: Sigma = Sigma::fixed(
     "±",
     ANGLE_SIGMA,
     0.05,
-    "3°, by the direction of the lane or of the first marks; assumed",
+    "3 deg, by the direction of the lane or of the first marks; assumed",
 );
 const SPEED: Field = Field::new("speed", "range of the speed", EVIDENCE_SPEED);
 const SIDESLIP: Field =

@@ -450,7 +450,7 @@ mod tests {
         striking.controls.closed_loop = Some(ClosedLoop { pit, ..ClosedLoop::default() });
         let notes = drawn_drivers([&struck(), &striking]);
         let [note] = &notes[..] else { panic!("{notes:?}") };
-        assert!(note.text.starts_with("drawn of the striking vehicle, driver of the PIT: 90°"));
+        assert!(note.text.starts_with("drawn of the striking vehicle, driver of the PIT: 90 to"));
         let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
         let text = note.text_in(&german, &|_| "stoßendes Fahrzeug".to_owned()).unwrap();
         assert!(text.starts_with("Gezogen (stoßendes Fahrzeug): Fahrer, der das PIT"), "{text}");

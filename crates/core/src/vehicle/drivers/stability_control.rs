@@ -143,7 +143,7 @@ impl StabilityControl {
             (
                 self.gives_up_sideslip_rad.is_some(),
                 [
-                    "gives up at 30° to 60° of side slip or, in a third, never",
+                    "gives up at 30 to 60 deg of side slip or, in a third, never",
                     "gibt bei 30° bis 60° Schwimmwinkel auf, in einem Drittel nie",
                 ],
             ),

@@ -204,7 +204,7 @@ impl PitDriver {
         drawn_words([
             (
                 self.steering_wheel_rad.is_some(),
-                ["90° to 180° of the steering wheel", "90° bis 180° am Lenkrad"],
+                ["90 to 180 deg of the steering wheel", "90° bis 180° am Lenkrad"],
             ),
             (
                 self.turn_s.is_some(),
@@ -217,7 +217,7 @@ impl PitDriver {
             (
                 self.struck_turn_rad.is_some(),
                 [
-                    "until the struck car has turned by 30° to 90°",
+                    "until the struck car has turned by 30 to 90 deg",
                     "bis sich das gestoßene Fahrzeug um 30° bis 90° gedreht hat",
                 ],
             ),

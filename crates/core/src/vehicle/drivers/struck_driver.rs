@@ -97,7 +97,7 @@ impl Countersteer {
             (
                 self.largest_steering_wheel_rad.is_some(),
                 [
-                    "at most 180° to 540° of the steering wheel",
+                    "at most 180 to 540 deg of the steering wheel",
                     "höchstens 180° bis 540° am Lenkrad",
                 ],
             ),

@@ -352,7 +352,7 @@ fn what_is_stated_of_a_driver_is_not_drawn() {
         ("anti-lock", false),
         ("after 0.4", false),
         ("gain on side slip", true),
-        ("90° to 180° of the steering wheel", false),
+        ("90 to 180 deg of the steering wheel", false),
         ("turned within 0.2 to 0.5 s", true),
         ("equally likely", false),
     ] {
@@ -415,4 +415,26 @@ fn the_reference_yaw_rate_is_that_of_a_car_that_does_not_oversteer() {
     vehicle.tires.cornering_coefficient_rear_per_rad *= 0.3;
     let neutral = esc.reference_yaw_rate_rad_s(&vehicle, 30.0, 0.001);
     assert!((neutral - 0.03 / wheelbase_m).abs() < 1e-12, "{neutral}");
+}
+
+/// English mixed “90°” with “500 deg/s” in one row.
+#[test]
+fn degrees_of_what_is_drawn_have_one_form_in_a_language() {
+    let all = ClosedLoop {
+        esc: Some(StabilityControl::default()),
+        countersteer: Some(Countersteer::default()),
+        pit: Some(PitDriver::default()),
+        ..ClosedLoop::default()
+    };
+    let say = |language| {
+        let format = NumberFormat { units: UnitSystem::Si, language };
+        Phrase::joined(all.distributions(), "; ").say(&format)
+    };
+    let english = say(Language::En);
+    for of_what in ["90 to 180 deg of", "30 to 90 deg", "30 to 60 deg", "180 to 540 deg", "deg/s"] {
+        assert!(english.contains(of_what), "{of_what}: {english}");
+    }
+    assert!(!english.contains('°'), "{english}");
+    let german = say(Language::De);
+    assert!(german.contains('°') && !german.contains("deg"), "{german}");
 }

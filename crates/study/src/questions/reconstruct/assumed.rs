@@ -396,7 +396,8 @@ fn text(PriorComponent { latent, distribution, .. }: &PriorComponent) -> Phrase 
                 distribution.ninety().map(|end| PhraseValue::three_digits(quantity, end));
             let (range, [low, high]) = match quantity {
                 Quantity::Angle => {
-                    let range = Phrase::new("{0}, 90 %: {1} to {2}°", "{0}, 90 %: {1}° bis {2}°");
+                    let range =
+                        Phrase::new("{0}, 90 %: {1} to {2} deg", "{0}, 90 %: {1}° bis {2}°");
                     (range, [low, high].map(|end| end.in_unit("deg").bare()))
                 }
                 _ => (
@@ -439,6 +440,10 @@ mod tests {
                 let stands = found.iter().any(|caveat| caveat.text.contains(&text));
                 assert!(stands, "{text} is assumed and not told");
             }
+        }
+        for component in model.prior().components() {
+            let text = text(component).say(&NumberFormat::default());
+            assert!(!text.contains('°'), "degrees are deg in English: {text}");
         }
         let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
         for caveat in &found {

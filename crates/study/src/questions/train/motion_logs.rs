@@ -218,7 +218,7 @@ fn name_of(path: &Path) -> String {
 ///
 /// - `name`: of the log.
 fn straight_ahead(name: &str) -> Caveat {
-    let value = Phrase::new("0° throughout", "durchweg 0°");
+    let value = Phrase::new("0 deg throughout", "durchweg 0°");
     let reason = Phrase::new(
         "{0} has no steering: columns steer, or steering_wheel with --steering-ratio",
         "{0} hat keine Lenkung: Spalten steer, oder steering_wheel mit --steering-ratio",
