@@ -19,7 +19,8 @@ pub enum Language {
 ///
 /// The digits of a number follow its uncertainty:
 ///
-/// - with an interval, two digits of the width of that ([`NumberFormat::estimate`]);
+/// - with an interval, two digits of the width of that, but whole units where it is below 1000
+///   ([`NumberFormat::estimate`]);
 /// - of draws without an interval, of a single motion, and of an impact beside which the force network
 ///   has intervals, two significant digits, but all of a place or a heading before the decimal point,
 ///   which is no better known near zero than far from it ([`NumberFormat::rough`]);
@@ -73,6 +74,10 @@ const STANDSTILL: f64 = 1e-3;
 /// Width of an interval below which it is one of rounding, in the unit of display: no decimal that is shown
 /// tells its ends apart.
 const LEAST_WIDTH: f64 = 1e-6;
+
+/// Width of an interval up to which whole units are told, in the unit of display: a force in lbf has an interval of
+/// tens of thousands, and five digits of it say nothing.
+const WHOLE_UNITS_BELOW: f64 = 1000.0;
 
 impl EstimateText {
     /// The interval of a level; `None` if there is none.
@@ -325,7 +330,8 @@ fn bounds([low, high]: [f64; 2], width: f64) -> [String; 2] {
     [rounded_by(low, width, down), rounded_by(high, width, |steps| -down(-steps))]
 }
 
-/// A number with two digits of a width, or with four significant ones if that is none but rounding.
+/// A number with two digits of a width, or with four significant ones if that is none but rounding. Whole units
+/// stand up to a width of [`WHOLE_UNITS_BELOW`].
 ///
 /// - `round`: to a whole number of steps of the last digit.
 fn rounded_by(value: f64, width: f64, round: impl Fn(f64) -> f64) -> String {
@@ -333,8 +339,10 @@ fn rounded_by(value: f64, width: f64, round: impl Fn(f64) -> f64) -> String {
         width if width < LEAST_WIDTH => significant(value),
         width if !width.is_finite() => value.to_string(),
         width => {
-            let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
-            let scale = 10.0_f64.powi(decimals as i32);
+            let wanted = (1 - width.log10().floor() as i32).min(6);
+            let is_wide = width >= WHOLE_UNITS_BELOW;
+            let digits = if is_wide { wanted } else { wanted.max(0) };
+            let (scale, decimals) = (10.0_f64.powi(digits), digits.max(0) as usize);
             // Adding zero turns a negative zero into a positive one.
             format!("{:.decimals$}", round(value * scale) / scale + 0.0)
         }

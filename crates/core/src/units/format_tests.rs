@@ -39,6 +39,15 @@ fn an_interval_decides_the_digits() {
     // What does not move was told as “0.000000 (0.000000 to 0.000000) m”.
     assert_eq!(shown(8e-17, [-6e-14, 2e-14]), "0 m");
     assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
+    // A force that is known to some half of itself was “25583 (14837 to 41287) lbf”.
+    let us = NumberFormat::english(UnitSystem::Us);
+    let force = Estimate::new(113_800.0, [90e3, 140e3], [66e3, 183.65e3]);
+    assert_eq!(us.estimate_in_words(Quantity::Force, &force), "26000 (14000 to 42000) lbf");
+    let text = us.estimate(Quantity::Force, &force);
+    assert_eq!((&*text.median, &*text.intervals[0].range), ("26000 lbf", "20000 to 32000 lbf"));
+    assert_eq!(us.measured(Quantity::Force, 113_800.0, 12_000.0), "25600 ± 2700 lbf");
+    let narrow = Estimate::new(3843.0, [3000.0, 4000.0], [2958.0, 5400.0]);
+    assert_eq!(us.estimate_in_words(Quantity::Impulse, &narrow), "864 (664 to 1214) lbf s");
     let nested = Estimate::new(32.209, [30.11, 34.52], [26.789, 37.193]);
     let text = EN.estimate(Quantity::Length, &nested);
     let ranges: Vec<&str> = text.intervals.iter().map(|interval| interval.range.as_str()).collect();
