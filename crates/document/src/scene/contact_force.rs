@@ -3,7 +3,7 @@
 use crate::scene::{SceneForce, SceneRole};
 use impactlab_core::collision::{Footprint, Pose};
 use impactlab_core::data::Channel;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_study::analysis::Analysis;
 
 /// Length of the arrow of the largest force, m; those of others are in proportion to their square roots,
@@ -40,7 +40,7 @@ pub(super) fn contact_force(analysis: &Analysis, units: UnitSystem) -> Option<Sc
         let pose = Pose { x_m: x[i], y_m: y[i], yaw_rad: yaw[i] };
         Some([tail, tip].map(|end| pose.world_from_body(end)))
     };
-    let size = Quantity::Force.shown(largest_n, units);
+    let size = NumberFormat::english(units).rough(Quantity::Force, largest_n);
     Some(SceneForce {
         name: format!("contact force, mean over 10 ms, up to {size}"),
         role: SceneRole::Evidence,

@@ -12,7 +12,7 @@ use crate::scene::{
 use impactlab_core::collision::Pose;
 use impactlab_core::data::{ForceAxes, TimeSeries};
 use impactlab_core::uncertainty::Caveats;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::frames::world_from_body;
 use impactlab_core::vehicle::{TireMark, tire_marks};
 use impactlab_study::analysis::{Analysis, StruckVehicle, VehicleTrack};
@@ -74,7 +74,8 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
         let controls = analysis.controlled();
         add_marks(&mut scene, &tire_marks(&simulated.series, controls));
         let motion = CarMotion::from_series(&simulated.series, &shape.body, Some(controls));
-        let named = ["4DOF simulation", "struck"];
+        let tag = if analysis.is_alone() { "car" } else { "struck" };
+        let named = ["4DOF simulation", tag];
         add(&mut scene, named, SceneRole::Simulated, CarLook::Solid, &shape, motion);
     }
     scene.end_s = scene.struck().map_or(0.0, |car| car.motion.end_s());
@@ -206,10 +207,72 @@ fn impulse_arrow(analysis: &Analysis, units: UnitSystem) -> Option<SceneArrow> {
     let back = length_m / size;
     let tail = [tip[0] - impulse[0] * back, tip[1] - impulse[1] * back];
     let of_first = if analysis.pair.is_some() { " of the first contact" } else { "" };
-    let shown = Quantity::Impulse.shown(size, units);
+    let shown = NumberFormat::english(units).rough(Quantity::Impulse, size);
     Some(SceneArrow {
         name: format!("impulse on the struck vehicle{of_first}, {shown}"),
         role: SceneRole::Evidence,
         ends_m: [tail, tip],
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::collision::Scenario;
+    use impactlab_core::vehicle::{Ending, Integrator, Preset, VehicleState};
+    use impactlab_study::analysis::{
+        DriveSetup, PulseSetup, Settings, analyse_drive, analyse_scenario,
+    };
+
+    fn settings() -> Settings {
+        Settings {
+            struck: Preset::Target.parameters(),
+            striking: Preset::Bullet2000.parameters(),
+            ending: Ending::default(),
+            integrator: Integrator::Rk4,
+            duration_s: 1.0,
+            ends_at_rest: false,
+            one_contact: false,
+            friction_zones: Vec::new(),
+        }
+    }
+
+    fn scene(analysis: &Analysis) -> Scene {
+        let caveats = &Caveats::default();
+        simulation_scene(&SimulationScene { analysis, others: &[], units: UnitSystem::Us, caveats })
+    }
+
+    /// “680.3 lbf s” and “up to 13168 lbf” stood in the legend, of a force that nobody has measured.
+    #[test]
+    fn impulse_and_force_have_two_digits_in_the_legend() {
+        let scenario = Scenario::example();
+        let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings()).unwrap();
+        let scene = scene(&analysis);
+        let names = scene.arrows.iter().map(|arrow| &arrow.name);
+        let names: Vec<&String> = names.chain(scene.forces.iter().map(|of| &of.name)).collect();
+        assert_eq!(names.len(), 2, "{names:?}");
+        for name in names {
+            let number = name.split(' ').rev().find(|word| word.parse::<f64>().is_ok()).unwrap();
+            let digits = number.trim_start_matches(['0', '.']).trim_end_matches('0');
+            let n_digits = digits.chars().filter(char::is_ascii_digit).count();
+            assert!(n_digits <= 2, "{name}");
+        }
+        assert!(scene.cars.iter().any(|car| car.tag == "struck"));
+    }
+
+    /// A car that nothing strikes was tagged as struck.
+    #[test]
+    fn a_car_that_touches_nothing_is_no_struck_one() {
+        let setup = DriveSetup {
+            initial: VehicleState { vx_body_m_s: 20.0, ..VehicleState::default() },
+            load: None,
+            steer: None,
+            wheels: None,
+            notes: Vec::new(),
+        };
+        let analysis = analyse_drive("straight", setup, &settings()).unwrap();
+        let scene = scene(&analysis);
+        let tags: Vec<&str> = scene.cars.iter().map(|car| &*car.tag).collect();
+        assert_eq!(tags, ["car"]);
+    }
 }
