@@ -111,11 +111,12 @@ impl State {
             ("Struck", Role::Struck, DEFAULT_VEHICLE),
             ("Striking", Role::Striking, DEFAULT_STRIKING),
         ];
+        let units = self.view.units;
         of.map(|(label, role, default)| {
-            let assumed = format!("left open (else {})", vehicle_name(default.id()));
+            let assumed = format!("left open (else {})", vehicle_name(default.id(), units));
             let detail = match self.fixed_object(role) {
                 Some(object) => object.word().to_owned(),
-                None => vehicle_label(&self.project.chosen_vehicle(role), &assumed),
+                None => vehicle_label(&self.project.chosen_vehicle(role), &assumed, units),
             };
             let show = Command::Show(Pane::Vehicle);
             ContentsEntry::new(Group::Vehicles, label, detail, show)

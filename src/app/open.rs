@@ -18,6 +18,7 @@ use crate::app::source::{Content, Source, read_source};
 use crate::app::state::{Session, State, Subject};
 use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
+use crate::app::widgets::name_in_units;
 use crate::app::workspaces::Workspace;
 use impactlab_core::collision::Role;
 use impactlab_core::data::{ColumnMap, CrashTest, Existing, RecorderRecord, Severity};
@@ -79,7 +80,8 @@ impl State {
         match InputFile::load_as(&path, kind) {
             Ok(InputFile::Evidence(evidence)) => self.open_evidence(path, *evidence),
             Ok(InputFile::Vehicle(vehicle)) => {
-                self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
+                let name = name_in_units(&vehicle.name, self.view.units);
+                self.say(Severity::Info, format!("struck vehicle: {name}"));
                 self.choose_vehicle(Role::Struck, VehicleChoice::File(path));
             }
             Ok(InputFile::Scenario(scenario)) => {

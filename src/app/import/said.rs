@@ -38,7 +38,7 @@ impl SaidOfFile {
 
     /// What the variant would get, in words.
     pub(in crate::app) fn text(&self, units: UnitSystem) -> String {
-        let mut parts = vec![vehicle_label(&self.vehicle, "the assumed vehicle")];
+        let mut parts = vec![vehicle_label(&self.vehicle, "the assumed vehicle", units)];
         if let Some(speed_m_s) = self.start.speed_m_s {
             parts.push(Quantity::Speed.shown(speed_m_s, units));
         }

@@ -38,7 +38,7 @@ pub(super) fn settings_ui(
         optional_count(ui, &mut request.event, "the first", &EVENT).labelled_by(name.id);
         ui.end_row();
         let name = ui.label("Vehicle");
-        let open = format!("left open (else {})", vehicle_name(DEFAULT_VEHICLE.id()));
+        let open = format!("left open (else {})", vehicle_name(DEFAULT_VEHICLE.id(), units));
         let hint = "The car in which the recorder was";
         let picker = VehiclePicker {
             salt: "vehicle of a replay",

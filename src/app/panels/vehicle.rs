@@ -12,7 +12,7 @@ use crate::app::project::Project;
 use crate::app::state::Subject;
 use crate::app::vehicles::vehicle_title;
 use crate::app::widgets::{
-    VehiclePicker, choice_row, facts_ui, quantity_field, value_ui, vehicle_name,
+    VehiclePicker, choice_row, facts_ui, name_in_units, quantity_field, value_ui, vehicle_name,
 };
 use impactlab_core::collision::Role;
 use impactlab_core::data::Severity;
@@ -136,11 +136,11 @@ fn vehicle_choice_ui(
         Role::Struck => DEFAULT_VEHICLE,
         Role::Striking => DEFAULT_STRIKING,
     };
-    let default_name = vehicle_name(default.id());
+    let default_name = vehicle_name(default.id(), units);
     let named = project.scenario().and_then(|scenario| scenario.vehicle_name(role));
     let is_of_dataset = matches!(project.simulate.source, MotionSource::Case { .. });
     let open = match (named, role) {
-        (Some(name), _) => format!("as the scenario says: {}", vehicle_name(name)),
+        (Some(name), _) => format!("as the scenario says: {}", vehicle_name(name, units)),
         (None, Role::Struck) if is_of_dataset => {
             format!("as the data set says, else {default_name}")
         }
@@ -173,7 +173,7 @@ fn vehicle_choice_ui(
 /// Draws a row of a two-column grid with the vehicle that a file is about, which it does not say.
 pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice, units: UnitSystem) {
     let name = ui.label("Struck vehicle");
-    let open = format!("{} (assumed)", vehicle_name(DEFAULT_VEHICLE.id()));
+    let open = format!("{} (assumed)", vehicle_name(DEFAULT_VEHICLE.id(), units));
     let hint = "Its mass, inertia and tires: the file does not say them";
     let salt = "vehicle of the file";
     let picker = VehiclePicker { salt, name: &name, hint, open: &open, own: &[], units };
@@ -229,7 +229,7 @@ fn integrator_label(integrator: Integrator) -> &'static str {
 /// Draws the parameters of a vehicle, marks the estimates, and tells in the hint of each where it comes from.
 fn parameters_ui(ui: &mut Ui, role: Role, vehicle: &VehicleParameters, units: UnitSystem) {
     ui.weak(vehicle_title(role));
-    ui.strong(&vehicle.name);
+    ui.strong(name_in_units(&vehicle.name, units));
     ui.weak(&vehicle.source);
     Grid::new(("parameters", vehicle_title(role))).striped(true).num_columns(2).show(ui, |ui| {
         for parameter in vehicle_parameters(vehicle, units) {

@@ -37,5 +37,5 @@ pub use quantity::{
 };
 pub use refusal::problem_line_ui;
 pub use time_figure::{BetweenCursors, time_figure};
-pub use vehicle_picker::{VehiclePicker, vehicle_label, vehicle_name};
+pub use vehicle_picker::{VehiclePicker, name_in_units, vehicle_label, vehicle_name};
 pub use written::{config_field, written_field};

@@ -7,7 +7,7 @@ use egui::{
 
 use crate::app::model::file_name;
 use crate::app::widgets::within_view;
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 use impactlab_core::vehicle::{BuiltInVehicle, GeometryParameters, VehicleClass};
 use impactlab_study::VehicleChoice;
 
@@ -48,7 +48,7 @@ impl VehiclePicker<'_> {
     pub fn show(&self, ui: &mut Ui, choice: &mut VehicleChoice) -> bool {
         let before = choice.clone();
         let list = ComboBox::from_id_salt(self.salt)
-            .selected_text(vehicle_label(choice, self.open))
+            .selected_text(vehicle_label(choice, self.open, self.units))
             .truncate()
             .height(OPEN_HEIGHT)
             .close_behavior(PopupCloseBehavior::CloseOnClickOutside);
@@ -78,7 +78,7 @@ impl VehiclePicker<'_> {
         ScrollArea::vertical().max_height(OPEN_HEIGHT - SEARCH_HEIGHT).show(ui, |ui| {
             let mut first = None;
             for offered in std::iter::once(&VehicleChoice::Automatic).chain(self.own) {
-                let label = vehicle_label(offered, self.open);
+                let label = vehicle_label(offered, self.open, self.units);
                 if matches(&search, &label)
                     && ui.selectable_label(choice == offered, label).clicked()
                 {
@@ -122,18 +122,24 @@ impl VehiclePicker<'_> {
 /// What a choice is called.
 ///
 /// - `open`: what one is called that is left open.
-pub fn vehicle_label(choice: &VehicleChoice, open: &str) -> String {
+pub fn vehicle_label(choice: &VehicleChoice, open: &str, units: UnitSystem) -> String {
     match choice {
         VehicleChoice::Automatic => open.to_owned(),
-        VehicleChoice::Preset(id) => vehicle_name(id).to_owned(),
+        VehicleChoice::Preset(id) => vehicle_name(id, units),
         VehicleChoice::File(path) => file_name(path),
         VehicleChoice::Sheet(sheet) => format!("{} (edited)", sheet.name),
     }
 }
 
 /// The name of a vehicle that comes with the program; its id where there is none.
-pub fn vehicle_name(id: &str) -> &str {
-    BuiltInVehicle::from_id(id).map_or(id, |vehicle| vehicle.parameters.name.as_str())
+pub fn vehicle_name(id: &str, units: UnitSystem) -> String {
+    let name = |vehicle: &BuiltInVehicle| name_in_units(&vehicle.parameters.name, units);
+    BuiltInVehicle::from_id(id).map_or_else(|| id.to_owned(), name)
+}
+
+/// The name of a vehicle, in which the mass of one that comes with the program is in the units of the window.
+pub fn name_in_units(name: &str, units: UnitSystem) -> String {
+    BuiltInVehicle::name_in_units(name, name, &NumberFormat::english(units))
 }
 
 /// Draws a vehicle of the list.
@@ -144,7 +150,8 @@ fn vehicle_row(
     units: UnitSystem,
 ) -> Response {
     outline_ui(ui, &vehicle.parameters.geometry);
-    let row = ui.selectable_label(is_chosen, &vehicle.parameters.name);
+    let name = name_in_units(&vehicle.parameters.name, units);
+    let row = ui.selectable_label(is_chosen, name);
     let of = &vehicle.parameters;
     let mass = Quantity::Mass.shown(of.mass.mass_kg, units);
     let length = Quantity::Length.shown(of.geometry.outer_length_m, units);
@@ -224,8 +231,11 @@ mod tests {
         assert_eq!(found("").len(), BuiltInVehicle::all().len());
         assert_eq!(found("trabant"), [""; 0]);
         assert_eq!(
-            vehicle_name("toyota-corolla-2020"),
+            vehicle_name("toyota-corolla-2020", UnitSystem::Us),
             BuiltInVehicle::from_id("toyota-corolla-2020").unwrap().parameters.name
         );
+        // A car of “2000 kg” stood beside masses in pounds.
+        assert_eq!(vehicle_name("target-2000", UnitSystem::Si), "FEA target (2000 kg)");
+        assert_eq!(vehicle_name("target-2000", UnitSystem::Us), "FEA target (4409 lb)");
     }
 }

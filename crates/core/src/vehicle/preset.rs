@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
+use crate::units::{NumberFormat, Quantity, UnitSystem};
 use crate::vehicle::{LibraryVehicle, VehicleClass, VehicleParameters};
 
 macro_rules! presets {
@@ -113,6 +114,23 @@ impl BuiltInVehicle {
     /// The vehicle with an id; `None` if there is none.
     pub fn from_id(id: &str) -> Option<&'static Self> {
         Self::all().iter().find(|vehicle| vehicle.id == id)
+    }
+
+    /// The name of a vehicle with the mass at its end in the units of the reader, as in `FEA target (2000 kg)`,
+    /// where it is one that comes with the program. What somebody calls a car is theirs.
+    ///
+    /// - `name`: as the file of the vehicle has it;
+    /// - `translated`: the same in the language of the reader.
+    pub fn name_in_units(name: &str, translated: &str, format: &NumberFormat) -> String {
+        let in_pounds = || -> Option<String> {
+            Self::all().iter().find(|of| of.parameters.name == name)?;
+            let rest = translated.strip_suffix(" kg)")?;
+            let before = rest.trim_end_matches(|c: char| c.is_ascii_digit());
+            let mass_kg: f64 = rest.strip_prefix(before)?.parse().ok()?;
+            Some(format!("{before}{})", format.value(Quantity::Mass, mass_kg)))
+        };
+        let told = if format.units == UnitSystem::Us { in_pounds() } else { None };
+        told.unwrap_or_else(|| translated.to_owned())
     }
 }
 

@@ -108,17 +108,7 @@ impl Wording {
         let known = given_name_of(self.language, text).or_else(|| phrase_of(self.language, text));
         let known = known.or_else(|| Some(parts()?.join(", ")));
         let name = known.map_or_else(|| text.to_owned(), |known| self.local(&known));
-        let is_shipped = || BuiltInVehicle::all().iter().any(|of| of.parameters.name == text);
-        let in_units = (self.units == UnitSystem::Us && is_shipped()).then(|| self.mass_of(&name));
-        in_units.flatten().unwrap_or(name)
-    }
-
-    /// A name with the mass at its end in the units of the report, as in `FEA target (2000 kg)`.
-    fn mass_of(&self, name: &str) -> Option<String> {
-        let rest = name.strip_suffix(" kg)")?;
-        let before = rest.trim_end_matches(|c: char| c.is_ascii_digit());
-        let mass_kg = rest.strip_prefix(before)?.parse().ok()?;
-        Some(format!("{before}{})", self.given(Quantity::Mass, mass_kg)))
+        BuiltInVehicle::name_in_units(text, &name, &self.format)
     }
 
     /// A name of a case, a variant or a zone: in the language of the report if the program gave it, else as it is.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use impactlab_core::units::{Language, NumberFormat, Quantity, UnitSystem, two_digits};
+use impactlab_core::vehicle::BuiltInVehicle;
 
 use crate::facts::{FactTable, Value};
 
@@ -57,7 +58,7 @@ impl FactWriter<'_> {
         match value {
             Value::Term(term) => term.label(format.language).to_owned(),
             Value::Phrase(text) => (self.phrase)(text),
-            Value::Name(name) => (self.name)(name),
+            Value::Name(name) => BuiltInVehicle::name_in_units(name, &(self.name)(name), format),
             Value::Text(text) => text.clone(),
             Value::English(text) => (self.english)(text),
             Value::File(path) => (self.file)(path),
@@ -177,6 +178,17 @@ mod tests {
         assert_eq!(writer.value(&Value::chance_of_draws(1.0, 1)), "1 of 1 draw");
         assert_eq!(writer.value(&Value::chance_of_draws(0.0, 1)), "0 of 1 draw");
         assert_eq!(writer.value(&Value::chance_of_draws(1.0, 100)), "100.0 % ± 1.4 %");
+    }
+
+    /// The command line and the window told a car of “2000 kg” beside masses in pounds.
+    #[test]
+    fn the_mass_in_the_name_of_a_shipped_vehicle_is_in_the_units_of_the_reader() {
+        let told =
+            |units, name: &str| FactWriter::english(units).value(&Value::Name(name.to_owned()));
+        let name = "FEA target (2000 kg)";
+        assert_eq!(told(UnitSystem::Si, name), name);
+        assert_eq!(told(UnitSystem::Us, name), "FEA target (4409 lb)");
+        assert_eq!(told(UnitSystem::Us, "our van (2000 kg)"), "our van (2000 kg)");
     }
 
     #[test]

@@ -126,7 +126,7 @@ impl Cards<'_, '_> {
             if let Some(sheet) = chosen {
                 let header = match &*sheet {
                     VehicleChoice::Automatic => "Data sheet, dimensions".to_owned(),
-                    chosen => format!("Else as {}", vehicle_label(chosen, "")),
+                    chosen => format!("Else as {}", vehicle_label(chosen, "", *units)),
                 };
                 CollapsingHeader::new(header).id_salt(("dimensions", section.key)).show(ui, |ui| {
                     grid("dimensions").num_columns(2).show(ui, |ui| {

@@ -71,12 +71,16 @@ pub(super) fn vehicle_rows(
         .filter(is_text)
         .map(|row| {
             let name = format!("{}.{}", row.path.join("."), row.key);
+            let value = match (row.path.is_empty(), &*row.key) {
+                (true, "name") => wording.name(&vehicle.name),
+                _ => row.value.clone(),
+            };
             let rule = vehicle.estimates.get(&name);
             let source = rule.or_else(|| vehicle.stated.get(&name)).unwrap_or(&vehicle.source);
             InputRow {
                 group: group.to_owned(),
                 label: label(row, wording),
-                value: row.value.clone(),
+                value,
                 class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
                 source: wording.note(source),
             }
@@ -139,6 +143,16 @@ mod tests {
         let lighter = car.clone().with_mass(1500.0, None);
         let expected = format!("{}, here of 1500 kg", car.name);
         assert_eq!(name_in_question(&lighter.name, &lighter, &wording), expected);
+    }
+
+    /// The rows of inputs called a car of 4409 lb one of 2000 kg.
+    #[test]
+    fn the_row_of_the_name_has_its_mass_in_the_units_of_the_report() {
+        let car = Preset::Reference.parameters();
+        let rows = vehicle_rows(&car, "struck car", &Wording::english(UnitSystem::Us));
+        let values: Vec<&str> = rows.iter().map(|row| &*row.value).collect();
+        assert!(values.contains(&"Reference car (multibody, 4409 lb)"), "{values:?}");
+        assert!(!values.contains(&&*car.name), "{values:?}");
     }
 
     #[test]
