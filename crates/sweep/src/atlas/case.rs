@@ -6,7 +6,7 @@ use crate::PitInput;
 use crate::atlas::{Atlas, Axis};
 use impactlab_core::collision::Scenario;
 use impactlab_core::numerics::wrap_angle_rad;
-use impactlab_core::units::{Phrase, Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Phrase, Quantity, UnitSystem, significant, trimmed};
 use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{Ending, PitEnd, VehicleParameters};
 
@@ -46,13 +46,20 @@ pub struct OutsideInput {
 impl OutsideInput {
     /// What it is, and what the atlas has.
     pub fn text(&self, units: UnitSystem) -> String {
-        let [low, high] = self.ends.map(|end| self.quantity.shown(end, units));
+        let [low, high] = self.ends.map(|end| self.without_zeros(end, units));
         format!("{}: {}, the map has {low} to {high}", self.label, self.value(units))
     }
 
     /// Its value.
     pub fn value(&self, units: UnitSystem) -> String {
-        self.quantity.shown(self.value, units)
+        self.without_zeros(self.value, units)
+    }
+
+    /// The ends of the atlas are round numbers, which are stated and not measured.
+    fn without_zeros(&self, value_si: f64, units: UnitSystem) -> String {
+        let unit = self.quantity.display_unit(units);
+        let number = trimmed(significant(unit.from_si(value_si)));
+        NumberFormat::english(units).with_unit(&number, unit.symbol)
     }
 
     /// By how much it lies beyond the nearer end, such as `5.000 km/h above`.
@@ -244,7 +251,6 @@ impl CasePlace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use impactlab_core::units::NumberFormat;
     use impactlab_core::vehicle::{
         Braking, Countersteer, DEFAULT_BRAKE_RISE_S, PitDriver, Preset, built_in_vehicle,
     };
@@ -320,7 +326,7 @@ mod tests {
         };
         assert_eq!(input(15.0).beyond(UnitSystem::Si), "18.00 km/h below");
         assert_eq!(input(35.0).beyond(UnitSystem::Si), "18.00 km/h above");
-        let text = "Speed of the struck car: 54.00 km/h, the map has 72.00 km/h to 108.0 km/h";
+        let text = "Speed of the struck car: 54 km/h, the map has 72 km/h to 108 km/h";
         assert_eq!(input(15.0).text(UnitSystem::Si), text);
     }
 

@@ -247,7 +247,7 @@ mod tests {
         narrow.axes[0].label = "Speed of the struck car".to_owned();
         let told = format!("{:?}", of_case(&narrow, &[], &scenario, &struck, &wording).blocks);
         let expected =
-            "Geschwindigkeit des gestoßenen Fahrzeugs: 54,00 km/h, der Atlas reicht von 72,00 km/h";
+            "Geschwindigkeit des gestoßenen Fahrzeugs: 54 km/h, der Atlas reicht von 72 km/h";
         assert!(told.contains(expected) && !told.contains("the map"), "{told}");
         let mut slides = scenario;
         slides.striking.heading_rad += 0.3;
