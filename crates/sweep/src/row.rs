@@ -138,6 +138,11 @@ impl<'a> Answerer<'a> {
         library: &Library,
         inputs: &RowInputs,
     ) -> Result<(Vec<f64>, String), String> {
+        // JSON has no infinity: the row would be asked without the value.
+        let mut each = self.plan.vary.iter().zip(&inputs.values);
+        if let Some((vary, value)) = each.find(|(_, value)| !value.number.is_finite()) {
+            return Err(format!("{} is {}, expected a finite number", vary.name, value.number));
+        }
         let request = with_inputs(question, self.plan, inputs);
         let request: Request =
             serde_json::from_value(request).map_err(|error| error_chain(&error))?;

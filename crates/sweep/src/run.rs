@@ -217,6 +217,33 @@ mod tests {
         assert!(strong_m.abs() > 1.5 * weak_m.abs(), "{strong_m} {weak_m}");
     }
 
+    /// Such a row had the answer of the usual friction, and infinity in the column of the input.
+    #[test]
+    fn a_row_with_an_input_that_is_not_finite_has_no_answer() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let ask = serde_json::json!({
+            "question": "simulate",
+            "source": { "drive": { "speed_m_s": 20.0, "yaw_rate_rad_s": 0.0 } },
+            "vehicle": { "Preset": "reference-2000" },
+            "duration_s": 1.0,
+        });
+        fs::write(at("ask.json"), ask.to_string()).unwrap();
+        let plan = "question = \"request\"\nn = 16\n[request]\nfile = \"ask.json\"\n\
+                    outcomes = [{ name = \"y_m\", at = \"/end/y_m\", unit = \"m\" }]\n\
+                    [vary.friction]\nat = \"/friction\"\nlognormal = [0.7, 900.0]\n";
+        fs::write(at("plan.toml"), plan).unwrap();
+        let library = Library::default();
+        Plan::read(&at("plan.toml"), &library).unwrap().write(&at("sweep")).unwrap();
+        let rows = read_rows(&run_chunk(&at("sweep"), 0, &library).unwrap()).unwrap();
+        let frictions = &rows.inputs[0].values;
+        assert!(frictions.contains(&f64::INFINITY), "{frictions:?}");
+        for (friction, reason) in frictions.iter().zip(&rows.reasons) {
+            let expected = "friction is inf, expected a finite number";
+            assert_eq!(reason == expected, friction.is_infinite(), "{friction}: {reason}");
+        }
+    }
+
     fn chunks(stride: Option<u64>, variables: &[(&str, &str)]) -> Result<Vec<u64>, SweepError> {
         chunks_of_task(8, stride, |name| {
             let found = variables.iter().find(|(variable, _)| *variable == name);
