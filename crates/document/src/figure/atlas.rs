@@ -55,23 +55,29 @@ pub fn atlas_figure(input: &AtlasFigure<'_>) -> Figure {
     Figure::new(title, [x_axis, y_axis], elements).with_caveats(&caveats(other_networks))
 }
 
-/// What restricts every map, in a line below it. Where that is too long, it is cut from its end.
+/// What restricts every map, in a line below it. Where that is too long, it is cut from its end, so that other
+/// networks stand in its first clause.
 fn caveats(other_networks: &[String]) -> Caveats {
-    let (en, de) = match other_networks.is_empty() {
-        true => ("", ""),
-        false => (
-            " Computed with other networks than those in use here ({0}).",
-            " Mit anderen Netzen berechnet als den hier verwendeten ({0}).",
-        ),
+    let [en, de] = match other_networks.is_empty() {
+        true => [
+            "a model study of the PIT, checked against no measured one; no speed in it is a safe speed.",
+            "eine Modellstudie zum PIT, an keinem gemessenen geprüft; keine Geschwindigkeit darin ist eine \
+             sichere.",
+        ],
+        false => [
+            "a model study with other networks than those in use ({0}); no speed in it is a safe speed. \
+             Checked against no measured PIT.",
+            "eine Modellstudie mit anderen Netzen als den verwendeten ({0}); keine Geschwindigkeit darin ist \
+             eine sichere. An keinem gemessenen PIT geprüft.",
+        ],
     };
     let text = Phrase::new(
         format!(
-            "a model study of the PIT, checked against no measured one; no speed in it is a safe speed.{en} \
-             Hatched: few rows, or ones that fail or are cut off before rest, or the networks do not apply"
+            "{en} Hatched: few rows, or ones that fail or are cut off before rest, or the networks do not \
+             apply"
         ),
         format!(
-            "eine Modellstudie zum PIT, an keinem gemessenen geprüft; keine Geschwindigkeit darin ist eine \
-             sichere.{de} Schraffiert: wenige Rechnungen, oder solche, die scheitern oder vor dem Stillstand \
+            "{de} Schraffiert: wenige Rechnungen, oder solche, die scheitern oder vor dem Stillstand \
              abgeschnitten sind, oder die Netze gelten nicht"
         ),
     );
@@ -414,11 +420,15 @@ mod tests {
         for figure in [map, bars] {
             let restrictions = figure.caveats.restrictions();
             let line = &restrictions[0];
-            let (computed, hatched) =
-                (line.text.find("other networks").unwrap(), line.text.find("Hatched").unwrap());
-            assert!(computed < hatched && line.text.contains("(force, response)"), "{line}");
+            // A line that is too long is cut between clauses.
+            let first = line.text.split(';').next().unwrap();
+            assert!(
+                first.ends_with("other networks than those in use (force, response)"),
+                "{line}"
+            );
+            assert!(line.text.contains("a safe speed. Checked against no measured PIT. Hatched: "));
             let german = line.text_in(&german, &str::to_owned).unwrap();
-            assert!(german.contains("hier verwendeten (force, response). Schraff"), "{german}");
+            assert!(german.contains("als den verwendeten (force, response); keine"), "{german}");
         }
     }
 }

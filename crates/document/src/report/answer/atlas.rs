@@ -301,7 +301,7 @@ mod tests {
             let has_notice = told.blocks.iter().any(
                 |block| matches!(block, Block::Notice { text } if text.contains("(force network)")),
             );
-            [has_notice, format!("{:?}", told.picture).contains("those in use here (")]
+            [has_notice, format!("{:?}", told.picture).contains("those in use (")]
         };
         assert_eq!(told("ab"), [false; 2]);
         assert_eq!(told("cd"), [true; 2]);
