@@ -154,7 +154,7 @@ pub(crate) fn contact_at_medians(is_fixed: bool) -> Caveat {
         return Caveat::new(CaveatKind::Note, text);
     }
     let text = Phrase::new(
-        "stiffness, friction and recovery of the contact are at their medians; predict draws them, \
+        "stiffness, friction and recovery of the contact are at their medians; a forecast draws them, \
          and small causes decide whether a car that is pushed comes free or spins",
         "Steifigkeit, Reibung und Rückfederung des Kontakts haben ihre Medianwerte; eine Vorhersage zieht \
          sie. Kleine Ursachen entscheiden, ob ein geschobenes Fahrzeug freikommt oder schleudert",
