@@ -186,6 +186,13 @@ impl NumberFormat {
         self.with_components(&length, [&px, &py], names)
     }
 
+    /// The same of a place, such as `(44; -5.8) m`.
+    pub fn rough_place(&self, place_m: [f64; 2]) -> String {
+        let unit = Quantity::Length.display_unit(self.units);
+        let [x, y] = place_m.map(|m| rough_number(Quantity::Length, unit.from_si(m)));
+        self.with_unit(&format!("({x}; {y})"), unit.symbol)
+    }
+
     /// A share of one.
     pub fn percent(&self, share: f64) -> String {
         self.local(&percent(share))

@@ -126,8 +126,8 @@ impl PredictMotionReport {
             Fact::new(Term::MethodsVerdict, Value::Term(agree)),
             Fact::new(Term::OtherMethod, Value::Term(method)),
             Fact::new(Term::ComparedAfter, Value::Rounded(Quantity::Time, rival.time_s)),
-            Fact::new(Term::ForecastPlace, Value::Place(rival.forecast_m)),
-            Fact::new(Term::RivalPlace, Value::Place([rival.x_m, rival.y_m])),
+            Fact::new(Term::ForecastPlace, Value::RoughPlace(rival.forecast_m)),
+            Fact::new(Term::RivalPlace, Value::RoughPlace([rival.x_m, rival.y_m])),
             Fact::new(
                 Term::RivalHeading,
                 Value::Decimals(Quantity::Angle, rival.heading_change_rad, 0),

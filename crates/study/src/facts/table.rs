@@ -64,6 +64,8 @@ pub enum Value {
     Vector(Quantity, [f64; 2], [&'static str; 2]),
     /// A place, SI units, to a tenth of the unit that is shown.
     Place([f64; 2]),
+    /// A place that is drawn, or compared with such a one, SI units: two significant digits, but whole units.
+    RoughPlace([f64; 2]),
     /// An area that holds a place with a probability, m²: two significant digits.
     Area(f64),
     /// An hour of the clock.

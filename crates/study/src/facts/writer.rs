@@ -114,6 +114,7 @@ impl FactWriter<'_> {
                 format.rough_vector(*quantity, *components, names.each_ref().map(String::as_str))
             }
             Value::Place(place_m) => self.place(*place_m),
+            Value::RoughPlace(place_m) => format.rough_place(*place_m),
             Value::Area(area_m2) => self.area(*area_m2),
             Value::Clock(hour) => match format.language {
                 Language::En => format!("{hour} o’clock"),
@@ -160,6 +161,10 @@ mod tests {
         assert_eq!(text(Value::Area(163.9)), "160 m²");
         assert_eq!(text(Value::Area(9.9e-6)), "0 m²");
         assert_eq!(text(Value::Place([43.98, -5.944])), "(44.0; -5.9) m");
+        // The mean of a forecast of which 90 % lay within 16 m was known to a tenth.
+        assert_eq!(text(Value::RoughPlace([43.78, -5.844])), "(44; -5.8) m");
+        let us = FactWriter::english(UnitSystem::Us);
+        assert_eq!(us.value(&Value::RoughPlace([43.78, -5.844])), "(144; -19) ft");
         assert_eq!(text(Value::Rounded(Quantity::Time, 0.003)), "0.003 s");
         assert_eq!(text(Value::Probability(1.0)), "> 0.999");
         assert_eq!(text(Value::Probability(0.675)), "0.675");
