@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use crate::units::{NumberFormat, Quantity, UnitSystem};
+use crate::units::{NumberFormat, Phrase, PhraseValue, Quantity, UnitSystem};
 use crate::vehicle::{LibraryVehicle, VehicleClass, VehicleParameters};
 
 macro_rules! presets {
@@ -122,15 +122,30 @@ impl BuiltInVehicle {
     /// - `name`: as the file of the vehicle has it;
     /// - `translated`: the same in the language of the reader.
     pub fn name_in_units(name: &str, translated: &str, format: &NumberFormat) -> String {
-        let in_pounds = || -> Option<String> {
-            Self::all().iter().find(|of| of.parameters.name == name)?;
-            let rest = translated.strip_suffix(" kg)")?;
-            let before = rest.trim_end_matches(|c: char| c.is_ascii_digit());
-            let mass_kg: f64 = rest.strip_prefix(before)?.parse().ok()?;
-            Some(format!("{before}{})", format.value(Quantity::Mass, mass_kg)))
+        match Self::mass_in_name(name, translated) {
+            Some((before, mass_kg)) if format.units == UnitSystem::Us => {
+                format!("{before}{})", format.value(Quantity::Mass, mass_kg))
+            }
+            _ => translated.to_owned(),
+        }
+    }
+
+    /// The same within a phrase.
+    pub fn name_in_phrase(name: &str) -> PhraseValue {
+        let Some((before, mass_kg)) = Self::mass_in_name(name, name) else {
+            return PhraseValue::Name(name.to_owned());
         };
-        let told = if format.units == UnitSystem::Us { in_pounds() } else { None };
-        told.unwrap_or_else(|| translated.to_owned())
+        let text = format!("{before}{{0}})");
+        let phrase = Phrase::new(text.clone(), text);
+        PhraseValue::phrase(phrase.with(PhraseValue::given(Quantity::Mass, mass_kg)))
+    }
+
+    /// What stands before the mass at the end of the name of a vehicle that comes with the program, and that, kg.
+    fn mass_in_name<'a>(name: &str, translated: &'a str) -> Option<(&'a str, f64)> {
+        Self::all().iter().find(|of| of.parameters.name == name)?;
+        let rest = translated.strip_suffix(" kg)")?;
+        let before = rest.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((before, rest.strip_prefix(before)?.parse().ok()?))
     }
 }
 

@@ -8,7 +8,7 @@ use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, CaveatText}
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{
-    ContactPoint, FrictionZone, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters,
+    BuiltInVehicle, ContactPoint, FrictionZone, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters,
     ZONE_FRICTION_LOG_SIGMA, hidden_zones,
 };
 
@@ -121,7 +121,7 @@ pub(crate) fn medians(subject: CaveatSubject, vehicle: &VehicleParameters) -> Op
     let n = vehicle.sheet.as_ref()?.estimated().count();
     let value = Phrase::new("{0} of {1}, at their medians", "{0} von {1}, mit ihren Medianen")
         .with(PhraseValue::Name(n.to_string()))
-        .with(PhraseValue::Name(vehicle.name.clone()));
+        .with(BuiltInVehicle::name_in_phrase(&vehicle.name));
     let reason = Phrase::new(
         "its data sheet does not state them; impactlab vehicles lists the rules",
         "im Datenblatt nicht angegeben; die Schätzregeln nennt impactlab vehicles",

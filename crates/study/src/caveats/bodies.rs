@@ -4,8 +4,8 @@ use crate::caveats::restrictions;
 use impactlab_core::collision::{Role, Scenario};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
-use impactlab_core::vehicle::VehicleParameters;
 use impactlab_core::vehicle::sheet::Unusual;
+use impactlab_core::vehicle::{BuiltInVehicle, VehicleParameters};
 
 /// Radius of gyration about the vertical axis as a share of the length. Of cars, vans and trucks it is 0.25 to
 /// 0.33: those of the library have 0.28 to 0.32, and an even rod has 0.29.
@@ -74,7 +74,7 @@ pub(crate) fn unusual_phrases(vehicle: &VehicleParameters) -> Vec<Phrase> {
             "{0}: {1} {2}, wo ein Fahrzeug mit den übrigen Angaben etwa {3} hat; vielleicht eine andere Einheit, \
              oder das Doppelte oder die Hälfte des Gemeinten",
         )
-        .with(PhraseValue::Name(vehicle.name.clone()))
+        .with(BuiltInVehicle::name_in_phrase(&vehicle.name))
         .with(PhraseValue::Term(quantity.label().to_owned()))
         .with(PhraseValue::three_digits(unit, stated))
         .with(PhraseValue::three_digits(unit, by_rule))

@@ -3,7 +3,7 @@
 use impactlab_core::collision::{Role, Scenario, SharedNumber};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::{NumberFormat, Phrase, PhraseValue, Quantity, UnitSystem};
-use impactlab_core::vehicle::VehicleParameters;
+use impactlab_core::vehicle::{BuiltInVehicle, VehicleParameters};
 
 use crate::VehicleChoice;
 
@@ -77,7 +77,7 @@ fn other_than(scenario: &Scenario, role: Role, vehicle: &VehicleParameters) -> O
         "{0} as the collision has it: {1}",
         "{0} weicht in der Kollision vom Datenblatt ab: {1}",
     )
-    .with(PhraseValue::Name(vehicle.name.clone()))
+    .with(BuiltInVehicle::name_in_phrase(&vehicle.name))
     .with(PhraseValue::phrase(Phrase::joined(said, ", ")));
     let subject = match role {
         Role::Struck => CaveatSubject::Vehicle,
@@ -101,9 +101,11 @@ pub(crate) fn taken_over(
         (now_is != before_was).then(|| instead(&now, now_is, before_was))
     };
     let numbers = now.beside(vehicle).into_iter().zip(before.beside(vehicle));
-    let said = Phrase::joined(numbers.filter_map(told), ", ").say(&NumberFormat::english(units));
+    let format = NumberFormat::english(units);
+    let said = Phrase::joined(numbers.filter_map(told), ", ").say(&format);
+    let name = BuiltInVehicle::name_in_units(&vehicle.name, &vehicle.name, &format);
     (!said.is_empty())
-        .then(|| format!("{}: {} as {} has it: {said}", scenario.name, role.label(), vehicle.name))
+        .then(|| format!("{}: {} as {name} has it: {said}", scenario.name, role.label()))
 }
 
 fn instead(number: &SharedNumber, value: f64, before: f64) -> Phrase {
@@ -117,7 +119,7 @@ fn instead(number: &SharedNumber, value: f64, before: f64) -> Phrase {
 mod tests {
     use super::*;
     use impactlab_core::units::{Language, three_digits};
-    use impactlab_core::vehicle::built_in_vehicle;
+    use impactlab_core::vehicle::{Preset, built_in_vehicle};
 
     /// “Friction of the road 0.3” stood over a striking car on 0.8.
     #[test]
@@ -145,6 +147,13 @@ mod tests {
         let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
         let german = caveat.text_in(&german, &str::to_owned).unwrap();
         assert!(german.contains(&format!("mass 2000 kg statt {mass}")), "{german}");
+        let shipped = Preset::Target.parameters();
+        let mut heavy = scenario.clone();
+        heavy.struck.mass_kg = 2500.0;
+        let caveat = other_than(&heavy, Role::Struck, &shipped).unwrap();
+        assert!(caveat.text.starts_with("FEA target (2000 kg) as the collision"), "{caveat}");
+        let us = caveat.in_units(UnitSystem::Us);
+        assert!(us.text.starts_with("FEA target (4409 lb) as the collision"), "{us}");
         scenario.struck.take(&vehicle);
         scenario.struck.mass_kg += 30.0;
         assert_eq!(other(&scenario), None);
