@@ -65,8 +65,8 @@ fn caveats(other_networks: &[String]) -> Caveats {
              sichere.",
         ],
         false => [
-            "a model study with other networks than those in use ({0}); no speed in it is a safe speed. \
-             Checked against no measured PIT.",
+            "a model study with other networks than those in use ({0}); no speed in it is safe. Checked \
+             against no measured PIT.",
             "eine Modellstudie mit anderen Netzen als den verwendeten ({0}); keine Geschwindigkeit darin ist \
              eine sichere. An keinem gemessenen PIT geprüft.",
         ],
@@ -426,7 +426,7 @@ mod tests {
                 first.ends_with("other networks than those in use (force, response)"),
                 "{line}"
             );
-            assert!(line.text.contains("a safe speed. Checked against no measured PIT. Hatched: "));
+            assert!(line.text.contains("is safe. Checked against no measured PIT. Hatched: "));
             let german = line.text_in(&german, &str::to_owned).unwrap();
             assert!(german.contains("als den verwendeten (force, response); keine"), "{german}");
         }
