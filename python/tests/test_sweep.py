@@ -1,6 +1,7 @@
 """Chunks are the same bytes whoever computes them: the program, this package, or Dask's workers."""
 
 import hashlib
+import json
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -78,6 +79,34 @@ def test_dask_computes_the_same_bytes(of_program: Path, plan: Path, tmp_path: Pa
         with Client(cluster) as client:
             client.gather(client.map(impactlab.run_chunk, [str(folder)] * n, range(n)))
     assert parts(folder) == parts(of_program)
+
+
+def test_rows_of_a_request_have_the_kinds_of_their_caveats(tmp_path: Path) -> None:
+    question = {
+        "question": "simulate",
+        "source": {"drive": {"speed_m_s": 20.0, "yaw_rate_rad_s": 0.0}},
+        "vehicle": {"Preset": "reference-2000"},
+        "duration_s": 1.0,
+        "until_rest": True,
+    }
+    (tmp_path / "ask.json").write_text(json.dumps(question))
+    (tmp_path / "plan.toml").write_text("""
+question = "request"
+design = "grid"
+n = 1
+[request]
+file = "ask.json"
+outcomes = [{ name = "x_m", at = "/end/x_m", unit = "m" }]
+[vary.until_rest]
+at = "/until_rest"
+list = [false, true]
+""")
+    impactlab.plan_sweep(tmp_path / "plan.toml", tmp_path / "sweep")
+    table = pq.read_table(impactlab.run_chunk(tmp_path / "sweep", 0))
+    assert table["caveats"].to_pylist() == ["", "not_at_rest;driver_open"]
+    told = impactlab.ask(question)["caveats"]
+    assumed = {"assumed", "not_used", "note"}
+    assert {of["kind"] for of in told} - assumed == {"not_at_rest", "driver_open"}
 
 
 def test_what_cannot_be_run_is_refused(of_program: Path, tmp_path: Path) -> None:
