@@ -62,7 +62,7 @@ pub(super) fn part(
         true => blocks.push(facts_table(&speeds, context)),
         false => {
             blocks.push(facts_table(&speeds, context));
-            blocks.push(Block::paragraph(fill(words.too_few_particles, &[("ess", &ess)])));
+            blocks.push(Block::paragraph(words.too_few_particles));
         }
     }
     let mut opinion = opinion_of_reconstruction(report, &question, context);
@@ -185,11 +185,24 @@ fn pictures(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::Language;
     use crate::report::answer::stills::Grounds;
+    use crate::report::language::words_of;
     use crate::report::opinion::Rank;
     use crate::report::paths::ShownPaths;
     use impactlab_core::units::UnitSystem;
     use impactlab_study::{Measured, Measurement};
+
+    /// A warning of 3 independent draws stood above “equivalent to only 60 independent draws”: those of all
+    /// motions, which the table tells, are not those of the evidence as stated, which the warning tells.
+    #[test]
+    fn why_there_is_no_interval_is_said_with_no_second_number_of_draws() {
+        for language in [Language::En, Language::De] {
+            let text = words_of(language).too_few_particles;
+            let has_number = text.contains(|c: char| c == '{' || c.is_ascii_digit());
+            assert!(!has_number, "{text}");
+        }
+    }
 
     /// “… and probabilities of courses of events” were doubted where the answer told of a single course.
     #[test]

@@ -160,7 +160,7 @@ pub(super) const WORDS: Words = Words {
     meaning_doubtful: "Auf diese Intervalle{courses} ist kein Verlass: siehe die Warnungen in Abschnitt 6 ({badges}).",
     doubtful_figures: "Auf diese Werte{courses} ist kein Verlass: siehe die Warnungen in Abschnitt 6 ({badges}).",
     doubtful_courses: " und auf die Wahrscheinlichkeiten der Geschehensabläufe",
-    too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist {ess}, oder die \
+    too_few_particles: "Es wird kein Intervall angegeben: Der effektive Stichprobenumfang ist zu klein, oder die \
         Rechnung wurde beendet, bevor alle Spuren zählten; die Grenzen eines Intervalls wären die \
         einzelner Partikel. Mit mehr Partikeln erneut fragen und die Rechnung zu Ende führen.",
     held_when_tried: "; bei der Erprobung{known} trafen solche Bereiche in {share} von {n} Fällen zu",

@@ -154,7 +154,7 @@ pub(super) const WORDS: Words = Words {
     meaning_doubtful: "These intervals{courses} are not to be relied on: see the warnings in section 6 ({badges}).",
     doubtful_figures: "These figures{courses} are not to be relied on: see the warnings in section 6 ({badges}).",
     doubtful_courses: ", and the probabilities of the courses of events,",
-    too_few_particles: "No interval is given: the sample is equivalent to only {ess} independent draws, or the run was \
+    too_few_particles: "No interval is given: the sample is equivalent to too few independent draws, or the run was \
         stopped before the evidence had its full weight, so that the ends of an interval would rest on single \
         draws. Ask again with more particles, and let the run end.",
     held_when_tried: "; when tried{known}, such intervals held in {share} of {n} cases",
