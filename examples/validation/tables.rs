@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use impactlab_core::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, RestitutionForm};
 use impactlab_core::data::{Dataset, list_folder};
@@ -33,6 +33,13 @@ impl Row {
     }
 }
 
+/// The sets of sampled cars that nothing was fitted to, one of each design.
+const HELD_OUT_CARS: [&str; 3] = [
+    "trajectories-cars-held-out",
+    "trajectories-cars-wide-held-out",
+    "trajectories-cars-edge-held-out",
+];
+
 /// What takes minutes: impulses, motions of the 4DOF model, pairs, and both networks.
 pub(crate) fn quick(datasets: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
     Ok(vec![
@@ -40,7 +47,7 @@ pub(crate) fn quick(datasets: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
         four_dof(datasets)?,
         force(datasets)?,
         pairs(&datasets.join("pairs"))?,
-        response(&datasets.join("trajectories-cars-held-out"))?,
+        response(&HELD_OUT_CARS.map(|set| datasets.join(set)))?,
     ])
 }
 
@@ -190,10 +197,14 @@ fn pairs(path: &Path) -> Result<Found, Box<dyn Error>> {
 
 /// Errors of the shipped response network on cars that it has not seen, each by its data sheet, and how
 /// often its regions held.
-fn response(path: &Path) -> Result<Found, Box<dyn Error>> {
+fn response(sets: &[PathBuf]) -> Result<Found, Box<dyn Error>> {
     let mut cases: Vec<(ComparedCase, MotionCoverage)> = Vec::new();
     let mut n_left_out = 0;
-    for car in list_folder(path)?.into_iter().filter(|car| car.is_dir()) {
+    let mut cars = Vec::new();
+    for set in sets {
+        cars.extend(list_folder(set)?.into_iter().filter(|path| path.is_dir()));
+    }
+    for car in cars {
         let question = EvaluateResponseRequest {
             model: ModelChoice::default(),
             data: car,

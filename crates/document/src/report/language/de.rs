@@ -341,7 +341,7 @@ pub(super) const WORDS: Words = Words {
         neuronalen Netz. Ganze Bewegungen werden verfolgt, reihum mit den gezogenen Kräften und \
         Fahrzeugen, mindestens 240, wo ein Fahrzeug für sich allein verfolgt wird; was das Netz \
         offenlässt, wird für jede gezogen. Außerhalb des Gelernten tritt das 4DOF-Modell mit seinen gemessenen Fehlern an seine Stelle.",
-    limits_response: "Das mitgelieferte hat aus simulierten Bewegungen von 72 Fahrzeugen von bis zu 12 s gelernt. Die \
+    limits_response: "Das mitgelieferte hat aus simulierten Bewegungen von 88 Fahrzeugen von bis zu 12 s gelernt. Die \
         Auslaufstrecke wurde mit keiner Aufzeichnung verglichen.",
     method_reconstruction: "Rekonstruktion aus Spuren",
     method_reconstruction_text: "Alles Unbekannte (Geschwindigkeiten, Winkel, Kontakt, Reibung, Massen, Bremsung, …) hat \
@@ -397,7 +397,7 @@ pub(super) const WORDS: Words = Words {
         im Median 13 %.",
     table_force: "Fehler, Median (Mittel), %",
     table_force_coverage: "Anteil der wahren Werte in den Intervallen, %, ± Standardfehler",
-    validation_response: "Das mitgelieferte, gegen 180 simulierte Bewegungen von fünfzehn Fahrzeugen, die das Netz nicht kennt, jeweils \
+    validation_response: "Das mitgelieferte, gegen 371 simulierte Bewegungen von 31 Fahrzeugen, die das Netz nicht kennt, jeweils \
         nach Datenblatt: Fehler über 4 s und am Ende, bis 12 s; Anteile der Zeitpunkte und Enden in den Bereichen. \
         Keine reale Bewegung wurde geprüft.",
     validation_contact: "95 simulierte Paare von Mehrkörperfahrzeugen, 84 davon PIT-Manöver; an die Hälfte ist das Gesetz \
