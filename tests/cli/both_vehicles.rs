@@ -93,7 +93,7 @@ fn drivers_and_systems_act_in_a_forecast_and_are_drawn() {
     }
     // The usual reaction time is stated, and therefore not drawn.
     let stated = notes(&["--countersteer", "0.8"]);
-    assert!(stated.contains("countersteering: at most 180° to 540°"), "{stated}");
+    assert!(stated.contains("countersteering: at most 180 to 540 deg"), "{stated}");
     assert!(!stated.contains("after 0.4 to 1.8 s"), "{stated}");
 }
 

@@ -321,7 +321,7 @@ mod tests {
         let outside = of_case(&atlas([20.0, 30.0]), &[], &scenario, &struck, &wording);
         assert_eq!(outside.picture, None);
         let text = format!("{:?}", outside.blocks);
-        assert!(text.contains("outside") && text.contains("54.00 km/h"), "{text}");
+        assert!(text.contains("outside") && text.contains(": 54 km/h, the map has"), "{text}");
         let mut other = scenario;
         other.striking.vy_world_m_s *= -1.0;
         assert_eq!(
