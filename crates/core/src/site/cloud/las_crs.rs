@@ -75,8 +75,13 @@ pub(in crate::site) struct Stated {
 impl Stated {
     /// The number of a system that is known to be in feet, if the unit is not stated.
     pub(in crate::site) fn system_in_feet(&self) -> Option<u16> {
-        self.system.filter(|system| IN_FEET.contains(system))
+        self.system.filter(is_in_feet)
     }
+}
+
+/// Whether a system by its EPSG number is one of those of State Plane in feet.
+pub(in crate::site) fn is_in_feet(system: &u16) -> bool {
+    IN_FEET.contains(system)
 }
 
 /// What a header states; `None` if it has no coordinate system.

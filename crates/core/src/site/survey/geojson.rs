@@ -2,14 +2,15 @@
 //!
 //! Files of the draft of 2008 may have a member `crs` and the coordinates of a grid; coordinates that are no
 //! degrees are taken as easting and northing in metres. Those of web maps have metres that grow with the latitude
-//! and are refused.
+//! and are refused; those of a State Plane in feet are until the unit is said.
 
 use std::path::Path;
 
 use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 
+use crate::site::cloud::is_in_feet;
 use crate::site::survey::found::{Found, PROPERTIES, Thing, kept_text, wrong};
-use crate::site::{MapShape, SiteError};
+use crate::site::{MapShape, SiteError, SurveyOptions};
 
 /// Members of properties that name a feature, in the order in which they are looked for.
 const NAMES: [&str; 5] = ["name", "Name", "NAME", "title", "id"];
@@ -33,7 +34,7 @@ pub(super) fn is_geojson(head: &str) -> bool {
 ///
 /// # Errors
 /// [`SiteError::Survey`] with the line, [`SiteError::TooManyPoints`], [`SiteError::TooManyObjects`].
-pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
+pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<Found, SiteError> {
     let parsed = serde_json::from_str::<GeoJson>(text.trim_start_matches('\u{feff}').trim_end());
     let parsed = parsed.map_err(|error| {
         let line = (error.line() > 0).then_some(error.line() as u64);
@@ -68,6 +69,14 @@ pub(super) fn read(path: &Path, text: &str) -> Result<Found, SiteError> {
     if !found.is_geographic && OF_WEB_MAPS.contains(&code) {
         let expected = "has the coordinates of web maps (EPSG:3857), whose metres are too short by the cosine of the \
                         latitude; export it in degrees (EPSG:4326) or in a grid of the country";
+        return Err(wrong(path, None, &expected));
+    }
+    let in_feet = code.parse().ok().filter(is_in_feet);
+    if let (false, None, Some(number)) = (found.is_geographic, options.unit, in_feet) {
+        let expected = format!(
+            "states the system EPSG:{number}, which is one of the State Plane in feet; look the system up, and say the \
+             unit of its coordinates (--unit us_survey_ft in most states, or ft)"
+        );
         return Err(wrong(path, None, &expected));
     }
     let is_other = !code.is_empty() && !OF_DEGREES.iter().any(|of| of.eq_ignore_ascii_case(code));

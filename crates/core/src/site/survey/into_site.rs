@@ -107,7 +107,7 @@ impl Site {
         drop(bytes);
         let mut found = match format {
             SurveyFormat::Kml | SurveyFormat::Kmz => kml::read(path, &text)?,
-            SurveyFormat::GeoJson => geojson::read(path, &text)?,
+            SurveyFormat::GeoJson => geojson::read(path, &text, options)?,
             SurveyFormat::Table => table::read(path, &text, options)?,
         };
         let frame = Frame::new(path, &found, options)?;

@@ -84,10 +84,26 @@ fn the_system_of_a_grid_is_said_and_that_of_web_maps_refused() {
             "coordinates": [[1447153.4, 6800125.5], [1447185.8, 6800125.5]]}}}}]}}"#
         )
     };
-    let notes = read("map.geojson", &map("urn:ogc:def:crs:EPSG::2263")).unwrap().notes.join(" ");
-    assert!(notes.contains("EPSG::2263, in metres unless another unit"), "{notes}");
+    let notes = read("map.geojson", &map("urn:ogc:def:crs:EPSG::25833")).unwrap().notes.join(" ");
+    assert!(notes.contains("EPSG::25833, in metres unless another unit"), "{notes}");
     let error = read("map.geojson", &map("urn:ogc:def:crs:EPSG::3857")).unwrap_err();
     assert!(error.contains("web maps"), "{error}");
+}
+
+/// Lines of New York were 3.28 times too long, with a note alone.
+#[test]
+fn a_state_plane_in_feet_is_read_once_its_unit_is_said() {
+    let map = r#"{"type": "LineString", "coordinates": [[983456.5, 199123.25], [983556.5, 199123.25]],
+        "crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::2263"}}}"#;
+    let error = read("map.geojson", map).unwrap_err();
+    for part in ["map.geojson", "EPSG:2263", "State Plane in feet", "--unit us_survey_ft"] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+    let unit = Some(LengthUnit::SurveyFoot);
+    let said = SurveyOptions { unit, ..SurveyOptions::default() };
+    let site = read_as("map.geojson", map, &said).unwrap();
+    let length_m = distance_m(site.lines[0].line_m[0], site.lines[0].line_m[1]);
+    assert!((length_m - 120_000.0 / 3937.0).abs() < 1e-6, "{length_m}");
 }
 
 /// A feature by itself and a geometry, as databases give them, have the system that a collection has.
