@@ -210,7 +210,10 @@ fn nmea_tracks(text: &str) -> Result<Vec<Track>, Vec<String>> {
     if !text.lines().any(|line| kind(line) == Some("RMC")) {
         return nmea_track(text, "GGA").map(|gga| vec![gga]);
     }
-    let mut rmc = nmea_track(text, "RMC")?;
+    let mut rmc = match nmea_track(text, "RMC") {
+        Ok(rmc) => rmc,
+        Err(of_rmc) => return instead_of_rmc(text, of_rmc),
+    };
     let n_fixes = |track: &Track| track.rows.lines().count();
     let n_rmc = n_fixes(&rmc);
     let is_denser = |gga: &Track| n_fixes(gga) >= DENSER * n_rmc;
@@ -221,6 +224,29 @@ fn nmea_tracks(text: &str) -> Result<Vec<Track>, Vec<String>> {
         n_fixes(&gga)
     ));
     Ok(vec![rmc, gga])
+}
+
+/// The track by the sentences GGA, where those RMC give none.
+///
+/// - `of_rmc`: what is left out of them.
+///
+/// # Errors
+/// What is left out of both.
+fn instead_of_rmc(text: &str, mut of_rmc: Vec<String>) -> Result<Vec<Track>, Vec<String>> {
+    match nmea_track(text, "GGA") {
+        Ok(mut gga) => {
+            of_rmc.push(
+                "RMC gives no track: GGA is read instead, which has no speeds and no courses"
+                    .to_owned(),
+            );
+            gga.doubts.splice(0..0, of_rmc);
+            Ok(vec![gga])
+        }
+        Err(of_gga) => {
+            of_rmc.extend(of_gga);
+            Err(of_rmc)
+        }
+    }
 }
 
 /// The track of one kind of sentences.

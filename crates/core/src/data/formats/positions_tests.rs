@@ -87,6 +87,29 @@ fn a_log_of_wrong_checksums_says_how_many() {
     }
 }
 
+/// A log was refused for its sentences RMC, beside which good positions stood.
+#[test]
+fn gga_is_read_where_rmc_is_void() {
+    let rmc = |second: u32| {
+        sentence(&format!("GPRMC,10000{second}.00,V,5200.0000,N,00059.9950,W,,,251126,,"))
+    };
+    let gga = |second: u32| {
+        sentence(&format!(
+            "GPGGA,10000{second}.00,5200.0000,N,00059.99{second}0,W,1,12,0.7,9.0,M,,M,,"
+        ))
+    };
+    let text: String = (1..4).map(|second| rmc(second) + &gga(second)).collect();
+    let loaded = read("a.nmea", &text).unwrap();
+    assert_eq!(loaded.series.n_samples(), 3);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    for said in ["3 sentences without a position", "GGA is read instead"] {
+        assert!(notes.iter().any(|note| note.contains(said)), "{said}: {notes:?}");
+    }
+    let void: String = (1..4).map(rmc).collect();
+    let error = read("a.nmea", &void).unwrap_err().to_string();
+    assert!(error.contains("3 sentences without a position"), "{error}");
+}
+
 #[test]
 fn positions_that_were_not_measured_are_said() {
     let estimated = |sentences: [String; 2]| {
