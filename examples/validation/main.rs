@@ -14,6 +14,7 @@
 #![allow(clippy::print_stdout)]
 
 mod probes;
+mod response;
 mod tables;
 
 use std::error::Error;
