@@ -42,7 +42,7 @@ use impactlab_core::data::{
 };
 use impactlab_core::program;
 use impactlab_core::ranges::{REST_LIMIT, ROAD_FRICTION_SIGMA};
-use impactlab_core::vehicle::{ROAD_FRICTION_SPREAD, built_in_vehicle};
+use impactlab_core::vehicle::{built_in_vehicle, usual_road_sigma};
 use impactlab_study::{DEFAULT_VEHICLE, Library, Request};
 
 /// Time after which a motion is followed no further where nobody says it, s.
@@ -262,7 +262,7 @@ impl PitFile {
         }
         let struck = scenario.struck_vehicle.as_deref().and_then(built_in_vehicle);
         let friction = struck.unwrap_or_else(|| DEFAULT_VEHICLE.parameters()).tires.friction;
-        let usual = if friction_varies { 0.0 } else { ROAD_FRICTION_SPREAD * friction };
+        let usual = if friction_varies { 0.0 } else { usual_road_sigma(friction) };
         let road_sigma = self.friction_sigma.unwrap_or(usual);
         if !ROAD_FRICTION_SIGMA.contains(road_sigma) {
             let expected = ROAD_FRICTION_SIGMA.expected_si();

@@ -12,7 +12,9 @@ use impactlab_core::ranges::{
     ROAD_FRICTION_SIGMA, Range, STEERING_RATIO, STEERING_RATIO_SIGMA,
 };
 use impactlab_core::units::{NumberFormat, UnitSystem, percent};
-use impactlab_core::vehicle::{DrivenAxle, ROAD_FRICTION_SPREAD, USUAL_STEERING_RATIO};
+use impactlab_core::vehicle::{
+    DrivenAxle, LEAST_ROAD_FRICTION_SIGMA, ROAD_FRICTION_SPREAD, USUAL_STEERING_RATIO,
+};
 use impactlab_reconstruct::evidence::RECORDED_SPEED_SHARE;
 use impactlab_study::{DEFAULT_VEHICLE, ReplayRequest, VehicleChoice};
 
@@ -105,7 +107,10 @@ fn numbers_ui(ui: &mut Ui, request: &mut ReplayRequest, units: UnitSystem) {
     let ratio_sigma = request.usual_steering_ratio_sigma();
     let usual_sigma = format.rounded(STEERING_RATIO_SIGMA.quantity, ratio_sigma);
     let usual_share = format.rounded(RECORDED_SPEED_SIGMA.quantity, RECORDED_SPEED_SHARE);
-    let usual_spread = format!("by the data sheet, else {} of it", percent(ROAD_FRICTION_SPREAD));
+    let usual_spread = format!(
+        "by the data sheet, else {} of it, {LEAST_ROAD_FRICTION_SIGMA} at least",
+        percent(ROAD_FRICTION_SPREAD)
+    );
     let numbers: [(&str, &mut Option<f64>, &str, f64, &Range); 6] = [
         (
             "Steering ratio",

@@ -29,7 +29,7 @@ use impactlab_core::ranges::{
 };
 use impactlab_core::units::{NumberFormat, UnitSystem};
 use impactlab_core::vehicle::{
-    BuiltInVehicle, FixedObject, ROAD_FRICTION_SPREAD, RoadSlope, VehicleParameters,
+    BuiltInVehicle, FixedObject, RoadSlope, VehicleParameters, usual_road_sigma,
 };
 use impactlab_study::DEFAULT_VEHICLE;
 use impactlab_study::analysis::PulseSetup;
@@ -296,7 +296,7 @@ fn road_form(
 ) {
     let default = || BuiltInVehicle::from_id(DEFAULT_VEHICLE.id()).map(|of| &of.parameters);
     let usual = vehicle.or_else(default).map_or(0.8, |of| of.tires.friction);
-    let spread = ROAD_FRICTION_SPREAD * friction.unwrap_or(usual);
+    let spread = usual_road_sigma(friction.unwrap_or(usual));
     let shown = |value| NumberFormat::english(units).rounded(ROAD_FRICTION.quantity, value);
     egui::CollapsingHeader::new("Road").default_open(true).show(ui, |ui| {
         Grid::new("road").num_columns(2).show(ui, |ui| {

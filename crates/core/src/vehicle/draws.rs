@@ -12,6 +12,16 @@ use crate::vehicle::{DataSheet, SheetQuantity, VehicleParameters};
 /// it for dry asphalt: 0.06 of 0.8.
 pub const ROAD_FRICTION_SPREAD: f64 = 0.075;
 
+/// Least standard deviation of such a friction: in proportion alone, that of ice would be known eight times as well
+/// as that of dry asphalt. With it 90 % of a friction of 0.1 are 0.05 to 0.15.
+pub const LEAST_ROAD_FRICTION_SIGMA: f64 = 0.03;
+
+/// Standard deviation of the friction of a road that nobody has measured: [`ROAD_FRICTION_SPREAD`] of it, and at least
+/// [`LEAST_ROAD_FRICTION_SIGMA`].
+pub fn usual_road_sigma(friction: f64) -> f64 {
+    (ROAD_FRICTION_SPREAD * friction).max(LEAST_ROAD_FRICTION_SIGMA)
+}
+
 /// How the friction of a road is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RoadDraws {
@@ -216,6 +226,13 @@ impl Moments {
 mod tests {
     use super::*;
     use crate::vehicle::VehicleClass;
+
+    /// The friction of ice was known to 12 % with 90 %.
+    #[test]
+    fn a_low_friction_is_no_better_known_than_a_high_one() {
+        assert!((usual_road_sigma(0.8) - 0.06).abs() < 1e-12);
+        assert!((usual_road_sigma(0.1) - 0.03).abs() < 1e-12);
+    }
 
     #[test]
     fn vehicles_on_one_road_have_one_friction_in_each_draw() {

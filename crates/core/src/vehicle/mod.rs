@@ -53,7 +53,10 @@ pub use constants::VehicleConstants;
 pub use controlled::ControlledVehicle;
 pub use controls::{BRAKE_TORQUES, Controls, DRIVE_TORQUES, SteerHistory, WheelHistory};
 pub use crush::{CrushFace, CrushParameters, CrushStiffness};
-pub use draws::{ROAD_FRICTION_SPREAD, RoadDraws, Sensitivity, VehicleDraws};
+pub use draws::{
+    LEAST_ROAD_FRICTION_SIGMA, ROAD_FRICTION_SPREAD, RoadDraws, Sensitivity, VehicleDraws,
+    usual_road_sigma,
+};
 pub use drivers::{
     AntiLock, ClosedLoop, Countersteer, FollowedSpeed, Market, PitDriver, PitEnd, StabilityControl,
     TurnSide, esc_is_standard,

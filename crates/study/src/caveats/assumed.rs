@@ -4,12 +4,13 @@ use impactlab_core::collision::{
     Impact, Scenario, ScenarioGeometry, TOUCH_TOLERANCE_M, default_restitution_in_words,
 };
 use impactlab_core::numerics::NORMAL_QUANTILE_95;
+use impactlab_core::ranges::ROAD_FRICTION;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, CaveatText};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::sheet::{Estimate, SheetQuantity};
 use impactlab_core::vehicle::{
-    BuiltInVehicle, ContactPoint, FrictionZone, ROAD_FRICTION_SPREAD, RoadDraws, VehicleParameters,
-    ZONE_FRICTION_LOG_SIGMA, hidden_zones,
+    BuiltInVehicle, ContactPoint, FrictionZone, LEAST_ROAD_FRICTION_SIGMA, ROAD_FRICTION_SPREAD,
+    RoadDraws, VehicleParameters, ZONE_FRICTION_LOG_SIGMA, hidden_zones,
 };
 
 use crate::SimulateRequest;
@@ -54,6 +55,7 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
     let friction = vehicle.tires.friction;
     let [median, low, high] =
         [friction, friction - NORMAL_QUANTILE_95 * sigma, friction + NORMAL_QUANTILE_95 * sigma]
+            .map(|value| value.clamp(ROAD_FRICTION.low, ROAD_FRICTION.high))
             .map(|value| PhraseValue::three_digits(Quantity::Ratio, value));
     let value = with_ninety(SheetQuantity::Friction, median, [low, high]);
     let whose = match question.friction {
@@ -66,12 +68,21 @@ pub(crate) fn road(question: &SimulateRequest, vehicle: &VehicleParameters) -> O
             "der Wert aus der Fahrzeugdatei, da zur Fahrbahn nichts angegeben ist; anderer Wert: --friction",
         ),
     };
-    let reason = Phrase::new(
-        "{0}; σ {1} of it, as of dry asphalt: --friction-sigma",
-        "{0}; σ {1} davon, wie bei trockenem Asphalt: --friction-sigma",
-    )
-    .with(PhraseValue::phrase(whose))
-    .with(PhraseValue::given(Quantity::Ratio, ROAD_FRICTION_SPREAD).in_unit("%"));
+    let is_slippery = ROAD_FRICTION_SPREAD * friction < LEAST_ROAD_FRICTION_SIGMA;
+    let reason = match is_slippery {
+        true => Phrase::new(
+            "{0}; σ {1}, the least of a road that nobody has measured: --friction-sigma",
+            "{0}; σ {1}, der kleinste Wert für eine nicht gemessene Fahrbahn: --friction-sigma",
+        )
+        .with(PhraseValue::phrase(whose))
+        .with(PhraseValue::given(Quantity::Ratio, LEAST_ROAD_FRICTION_SIGMA)),
+        false => Phrase::new(
+            "{0}; σ {1} of it, as of dry asphalt: --friction-sigma",
+            "{0}; σ {1} davon, wie bei trockenem Asphalt: --friction-sigma",
+        )
+        .with(PhraseValue::phrase(whose))
+        .with(PhraseValue::given(Quantity::Ratio, ROAD_FRICTION_SPREAD).in_unit("%")),
+    };
     Some(Caveat::assumed(CaveatSubject::RoadFriction, value, reason))
 }
 

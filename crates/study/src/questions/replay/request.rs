@@ -28,9 +28,9 @@ use impactlab_core::ranges::{
 use impactlab_core::uncertainty::Caveats;
 use impactlab_core::units::Estimate;
 use impactlab_core::vehicle::{
-    DrivenAxle, Integrator, PathPoint, ROAD_FRICTION_SPREAD, RecordedDrive, RoadDraws,
-    SheetQuantity, SimulationError, SimulationRun, USUAL_STEERING_RATIO, VehicleDraws,
-    VehicleParameters, simulate_batch,
+    DrivenAxle, Integrator, PathPoint, RecordedDrive, RoadDraws, SheetQuantity, SimulationError,
+    SimulationRun, USUAL_STEERING_RATIO, VehicleDraws, VehicleParameters, simulate_batch,
+    usual_road_sigma,
 };
 use impactlab_reconstruct::evidence::RECORDED_SPEED_SHARE;
 
@@ -151,7 +151,7 @@ impl ReplayRequest {
     fn road(&self, vehicle: &VehicleParameters) -> Option<RoadDraws> {
         let sheet = vehicle.sheet.as_ref();
         let is_estimated = sheet.is_some_and(|of| of.known(SheetQuantity::Friction).is_none());
-        let usual = ROAD_FRICTION_SPREAD * vehicle.tires.friction;
+        let usual = usual_road_sigma(vehicle.tires.friction);
         let sigma = match self.friction_sigma {
             Some(sigma) => sigma,
             None if is_estimated => return None,

@@ -39,8 +39,8 @@ use impactlab_core::ranges::{
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
 use impactlab_core::vehicle::{
-    Ending, Equations, FrictionZone, Integrator, ROAD_FRICTION_SPREAD, RoadDraws, RoadSlope,
-    VehicleParameters,
+    Ending, Equations, FrictionZone, Integrator, RoadDraws, RoadSlope, VehicleParameters,
+    usual_road_sigma,
 };
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
@@ -66,7 +66,7 @@ pub struct SimulateRequest {
     #[serde(default)]
     pub friction: Option<f64>,
     /// Standard deviation of the friction of the road, which is drawn with the vehicles. If not given,
-    /// [`ROAD_FRICTION_SPREAD`] of the friction; that of a recorded motion of a data set is known.
+    /// [`usual_road_sigma`] of the friction; that of a recorded motion of a data set is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction_sigma: Option<f64>,
     /// The ground: a site file, whose zones have their own friction.
@@ -256,7 +256,7 @@ impl SimulateRequest {
             | MotionSource::Trajectory { .. }
             | MotionSource::Drive(_) => false,
         };
-        let sigma = self.friction_sigma.unwrap_or(ROAD_FRICTION_SPREAD * vehicle.tires.friction);
+        let sigma = self.friction_sigma.unwrap_or_else(|| usual_road_sigma(vehicle.tires.friction));
         (!is_of_record && sigma > 0.0).then_some(RoadDraws { sigma, seed })
     }
 
