@@ -1,6 +1,7 @@
 //! Cases: what they hold comes back, what has changed is said, and a package opens elsewhere.
 
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use impactlab_core::data::write::WriterLock;
@@ -86,7 +87,7 @@ fn a_case_and_its_files_can_be_moved_together() {
     let moved = CaseFile::load(&new.join("a.impactlab")).expect("loaded");
     assert_eq!(moved.used_paths(), [new.join("force.csv")]);
     assert!(moved.changes().is_empty());
-    let report = moved.ask(&[], &Library::default(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let report = moved.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.expect("asked").complete().expect("answers");
     assert!(report.is_clean(), "{report:?}");
 }
@@ -96,7 +97,7 @@ fn every_question_is_answered_as_its_command_answers_it() {
     let folder = folder("asked");
     let mut case = case(&force_file(&folder));
     let library = Library::default();
-    let mut go_on = |_: Event<'_>| std::ops::ControlFlow::Continue(());
+    let mut go_on = |_: Event<'_>| ControlFlow::Continue(());
     let report = case.ask(&[], &library, &mut go_on).expect("asked").complete().expect("answers");
     for (variant, answered) in case.variants.iter().zip(&report.variants) {
         for (request, answer) in variant.questions.iter().zip(&answered.answers) {
@@ -155,17 +156,101 @@ fn a_file_that_never_was_there_is_missing_too() {
 }
 
 #[test]
-fn a_folder_is_known_by_all_files_in_it() {
-    let folder = folder("dataset");
-    fs::create_dir_all(folder.join("set/cases")).expect("a folder");
-    fs::write(folder.join("set/cases.csv"), "a").expect("written");
-    fs::write(folder.join("set/cases/1.csv"), "b").expect("written");
-    let before = UsedFile::read(&folder.join("set")).expect("read");
-    assert_eq!(before.bytes, 2);
-    fs::write(folder.join("set/.hidden"), "x").expect("written");
-    assert_eq!(UsedFile::read(&folder.join("set")).expect("read"), before);
-    fs::write(folder.join("set/cases/1.csv"), "c").expect("written");
-    assert_ne!(UsedFile::read(&folder.join("set")).expect("read").sha256, before.sha256);
+fn a_folder_and_its_table_are_known_by_the_files_of_their_cases() {
+    let set = folder("dataset").join("set");
+    fs::create_dir_all(set.join("forces")).expect("a folder");
+    fs::write(set.join("cases.csv"), "case\n1\n").expect("written");
+    fs::write(set.join("forces/1.csv"), "b").expect("written");
+    for path in [set.clone(), set.join("cases.csv")] {
+        let before = UsedFile::read(&path).expect("read");
+        assert_eq!(before.bytes, 8);
+        for stray in [".hidden", "letter.txt", "forces/2.csv"] {
+            fs::write(set.join(stray), "x").expect("written");
+        }
+        assert_eq!(UsedFile::read(&path).expect("read"), before);
+        fs::write(set.join("forces/1.csv"), "c").expect("written");
+        assert_ne!(UsedFile::read(&path).expect("read").sha256, before.sha256);
+        fs::write(set.join("forces/1.csv"), "b").expect("written");
+    }
+}
+
+/// A package had every file below a folder of data, also what nobody reads, and of a table nothing but itself.
+#[test]
+fn a_package_has_the_files_of_data_sets_and_nothing_that_lies_beside_them() {
+    let folder = folder("data-sets");
+    let data = folder.join("data");
+    let lines = [
+        ("set/cases.csv", "case,m1_kg,m2_kg,v1_m_s,v2_m_s,angle_deg\n1,1500,1500,10,14,10\n"),
+        ("set/forces/1.csv", "t [s],Fx [N],Fy [N]\n0,0,0\n0.1,9,9\n0.2,0,0\n"),
+        ("set/forces/letter.csv", "private"),
+        ("set/forces/letter.txt", "private"),
+        ("set/private-notes.txt", "private"),
+        ("set/drafts/letter.txt", "private"),
+        ("pairs/cases.csv", "case,target,bullet\na,golf,polo\n"),
+        ("pairs/cases/a.csv", "t\n"),
+        ("pairs/cases/b.csv", "private"),
+        ("pairs/vehicles/golf.toml", ""),
+        ("pairs/vehicles/zz.toml", "private = 1"),
+        ("letters/letter.csv", "private"),
+        ("private.csv", "private"),
+    ];
+    for (name, text) in lines {
+        let path = data.join(name);
+        fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
+        fs::write(path, text).expect("written");
+    }
+    let case = |question: Request| {
+        let variant =
+            Variant { name: "base".to_owned(), questions: vec![question], ..Variant::default() };
+        let mut case = CaseFile::new("a", variant);
+        case.record_files();
+        case
+    };
+    let check = |path: &str| {
+        case(CheckRequest { paths: vec![data.join(path)], all: false, map: None }.into())
+    };
+    let names = |case: &CaseFile| -> Vec<String> {
+        let zip = folder.join("a.zip");
+        let packed = pack(case, &zip, Existing::Replace).expect("packed");
+        let there = folder.join("there");
+        let _ = fs::remove_dir_all(&there);
+        let opened = CaseFile::load(&unpack(&zip, &there).expect("unpacked")).expect("loaded");
+        assert_eq!(opened.changes(), []);
+        // It is as much of a data set there as here.
+        let answer = |case: &CaseFile| {
+            let asked = case.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
+            let report = asked.expect("asked").complete().expect("answers");
+            let report = serde_json::to_value(report).expect("JSON");
+            report["variants"][0]["answers"][0]["report"]["datasets"].as_array().map(Vec::len)
+        };
+        assert_eq!(answer(&opened), answer(case));
+        packed.into_iter().map(|file| file.name).collect()
+    };
+    let set = ["cases.csv", "forces/1.csv"];
+    let pairs = ["cases.csv", "cases/a.csv", "vehicles/golf.toml"];
+    let below = |folder: &str, files: &[&str]| -> Vec<String> {
+        files.iter().map(|file| format!("files/0/{folder}{file}")).collect()
+    };
+    assert_eq!(names(&check("set")), below("set/", &set));
+    assert_eq!(names(&check("set/cases.csv")), below("", &set));
+    assert_eq!(names(&check("pairs")), below("pairs/", &pairs));
+    let both = [below("data/pairs/", &pairs), below("data/set/", &set)].concat();
+    assert_eq!(names(&check("")), both);
+    let refused = |path: &str| {
+        let zip = folder.join("refused.zip");
+        let error = pack(&check(path), &zip, Existing::Refuse).expect_err("no data");
+        assert!(!zip.exists());
+        error.to_string()
+    };
+    let letters = refused("letters");
+    assert!(letters.ends_with("letters: holds no data that the case uses"), "{letters}");
+    let training = serde_json::json!({
+        "question": "fine_tune", "data": [], "logs": {"logs": [data.join("letters")]},
+    });
+    let training: Request = serde_json::from_value(training).expect("a question");
+    let packed = pack(&case(training), &folder.join("b.zip"), Existing::Refuse).expect("packed");
+    assert_eq!(packed.len(), 1);
+    assert_eq!(packed[0].name, "files/0/letters/letter.csv");
 }
 
 #[test]
@@ -180,7 +265,7 @@ fn a_package_opens_in_another_folder_with_the_same_answers() {
     let unpacked = CaseFile::load(&opened).expect("loaded");
     assert!(unpacked.changes().is_empty());
     let library = Library::default();
-    let mut go_on = |_: Event<'_>| std::ops::ControlFlow::Continue(());
+    let mut go_on = |_: Event<'_>| ControlFlow::Continue(());
     let report = unpacked.ask(&[], &library, &mut go_on).expect("asked").complete();
     assert!(report.expect("answers").is_clean());
     // A folder that is there is left alone.
@@ -253,7 +338,7 @@ fn a_site_goes_with_everything_it_names_and_is_found_in_a_package() {
     assert!(opened.changes().is_empty(), "{:?}", opened.changes());
     assert_eq!(opened.used_paths().len(), names.len(), "{:?}", opened.used_paths());
     fs::remove_dir_all(&road).expect("removed");
-    let report = opened.ask(&[], &Library::default(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let report = opened.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.expect("asked").complete().expect("answers");
     assert!(report.is_clean(), "{report:?}");
     // A change of the orthophoto is a change of the case.
@@ -282,12 +367,13 @@ fn a_package_has_names_that_every_system_can_hold() {
     assert!(opened.changes().is_empty(), "{:?}", opened.changes());
     assert_eq!(opened.name, case.name);
     // The files of a folder are found by their names, so that they are not changed.
-    let set = folder.join("set");
-    fs::create_dir(&set).expect("a folder");
-    let inner = set.join("a\\b.csv");
+    let logs = folder.join("logs");
+    fs::create_dir(&logs).expect("a folder");
+    let inner = logs.join("a\\b.csv");
     fs::rename(&force, &inner).expect("renamed");
-    let check = CheckRequest { paths: vec![set], all: false, map: None };
-    let questions = vec![Request::from(check)];
+    let training =
+        serde_json::json!({"question": "fine_tune", "data": [], "logs": {"logs": [logs]}});
+    let questions = vec![serde_json::from_value(training).expect("a question")];
     let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
     let case = CaseFile::new("a", variant);
     let error = pack(&case, &folder.join("b.zip"), Existing::Refuse).expect_err("a backslash");

@@ -195,17 +195,25 @@ impl Dataset {
         Ok(Outcome::Complete(Self { root: root.to_owned(), kind, vehicle_file, cases, problems }))
     }
 
-    /// The files from which a data set is loaded, in the order of their names. A folder that is no
-    /// data set has none.
+    /// The files from which a data set is loaded, in the order of their names: the table of cases, the
+    /// vehicle, and the files of the cases that the table names. Others in the folder are not of the data
+    /// set; a folder that is no data set has none.
     pub fn files(root: &Path) -> Vec<PathBuf> {
+        let Some(kind) = DatasetKind::from_folder(root) else { return Vec::new() };
         let mut files = vec![root.join(CASES_FILE), root.join(VEHICLE_FILE)];
-        if let Some(kind) = DatasetKind::from_folder(root) {
-            let of_cases = std::fs::read_dir(root.join(kind.folder()));
-            files.extend(of_cases.into_iter().flatten().flatten().map(|entry| entry.path()));
-        }
+        files.extend(Self::case_files(root, kind).unwrap_or_default());
         files.retain(|file| file.is_file());
         files.sort();
         files
+    }
+
+    /// The files of the cases that the table names.
+    fn case_files(root: &Path, kind: DatasetKind) -> Result<Vec<PathBuf>, DataError> {
+        let table = Table::read_cases(&root.join(CASES_FILE))?;
+        check_size(&table)?;
+        let rows = named_rows(&table, &mut Vec::new())?;
+        let mut files = CaseFiles::list(root, kind)?.files;
+        Ok(rows.iter().filter_map(|row| files.remove(&row.name)).collect())
     }
 
     /// The case of this name; `None` if the data set has no such case or the case could not be

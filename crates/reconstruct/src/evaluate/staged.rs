@@ -35,6 +35,24 @@ pub struct StagedCollisions {
 }
 
 impl StagedCollisions {
+    /// Whether a folder is one of staged collisions: it has `evidence/` and `truth/`.
+    pub fn is_at(root: &Path) -> bool {
+        ["evidence", "truth"].iter().all(|folder| root.join(folder).is_dir())
+    }
+
+    /// Evidence and truth of all cases, in the order of their names: which half a case is of is known by the
+    /// names of all. A folder that has no staged collisions has none.
+    pub fn files(root: &Path) -> Vec<PathBuf> {
+        let Some(staged) = Self::is_at(root).then(|| Self::open(root).ok()).flatten() else {
+            return Vec::new();
+        };
+        let of_case = |name: &String| [staged.evidence_file(name), staged.truth_file(name)];
+        let mut files: Vec<PathBuf> = staged.names.iter().flat_map(of_case).collect();
+        files.retain(|file| file.is_file());
+        files.sort();
+        files
+    }
+
     /// Lists the cases of a folder. No file is read.
     ///
     /// # Errors

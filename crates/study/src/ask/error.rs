@@ -203,7 +203,7 @@ pub enum StudyError {
         n_logs: usize,
     },
     /// A folder holds no logs.
-    #[error("{}: holds no file that ends in .csv", path.display())]
+    #[error("{}: holds no logs, expected files that end in .csv, and no data set", path.display())]
     NoLogs {
         /// The folder.
         path: PathBuf,

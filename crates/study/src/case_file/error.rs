@@ -71,6 +71,12 @@ pub enum CaseError {
         /// The file.
         path: PathBuf,
     },
+    /// A folder in which no question reads anything, so that it is not known what of it to pack.
+    #[error("{}: holds no data that the case uses", path.display())]
+    NothingRead {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The name of a file is one that others find it by, and that no package can have.
     #[error("{}: cannot be packed because of the backslash in its name; rename it", path.display())]
     PackedName {

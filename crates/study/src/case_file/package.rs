@@ -3,7 +3,7 @@
 //! ```text
 //! NAME.impactlab          its paths lead into files/
 //! files/0/force.csv       the first file that it uses, under its own name where every system can hold that
-//! files/1/fea/…           a folder, with everything in it
+//! files/1/fea/…           a folder, with the files of its data sets
 //! ```
 //!
 //! Nothing else is in a package, and one that has something else is refused before anything of it is on
@@ -17,9 +17,10 @@ use serde::Serialize;
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
+use crate::ask::inputs::data_files::{files_of_data, files_of_sets, folder_of_data};
 use crate::case_file::on_disk::sealed;
 use crate::case_file::portable::portable_name;
-use crate::case_file::used::{files_in, files_of_site};
+use crate::case_file::used::{files_of_site, named_below};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile};
 use crate::{ForceSource, ModelChoice, Request};
 use impactlab_core::data::write::{WriterLock, check_ending, check_inputs, sync_folder};
@@ -53,11 +54,12 @@ pub struct PackedFile {
 }
 
 /// Packs a case and every file that its questions use into a zip, whole or not at all, and returns the files in
-/// their order. A file that is filled in and not asked stays here. Who may be handed the others is for the caller
+/// their order. A file that is filled in and not asked stays here, and so does what lies in the folder of a data
+/// set and is no part of it. Who may be handed the others is for the caller
 /// to ask ([`CaseFile::reach`]).
 ///
 /// # Errors
-/// [`CaseError::Missing`] for a file that is not there, [`CaseError::PackedName`] for one that could not be
+/// [`CaseError::Missing`] for a file that is not there, [`CaseError::NothingRead`] for a folder without data, [`CaseError::PackedName`] for one that could not be
 /// unpacked, [`CaseError::Zip`], [`CaseError::Data`], also for a name that does not end in `.zip`.
 pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<PackedFile>, CaseError> {
     if let Some(path) = case.missing_inputs().into_iter().next() {
@@ -72,18 +74,22 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
     let mut entries = Vec::new();
     let mut places = Vec::new();
     for (used, place) in placed_files(&used)? {
-        let missing = || CaseError::Missing { path: used.clone() };
-        if used.is_dir() {
-            let io = |source| CaseError::Io { path: used.clone(), source };
-            let inner = files_in(&used).map_err(io)?;
-            entries.extend(inner.into_iter().map(|inner| PackedFile {
-                name: format!("{place}/{inner}"),
-                path: used.join(inner),
-            }));
+        if let Some(folder) = folder_of_data(&used) {
+            let reads = !files_of_sets(folder).is_empty() || case.reads_logs_in(folder);
+            let files = if reads { files_of_data(&used) } else { Vec::new() };
+            if files.is_empty() {
+                return Err(CaseError::NothingRead { path: used });
+            }
+            // A table lies beside the files of its cases.
+            let at = if folder == used { &place } else { parent_of(&place) };
+            let inner = named_below(folder, files).into_iter();
+            entries.extend(
+                inner.map(|(name, path)| PackedFile { name: format!("{at}/{name}"), path }),
+            );
         } else if used.is_file() {
             entries.push(PackedFile { name: place.clone(), path: used.clone() });
         } else {
-            return Err(missing());
+            return Err(CaseError::Missing { path: used });
         }
         places.push((used, format!("./{place}")));
     }
@@ -121,7 +127,22 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<Vec<Packed
     Ok(entries)
 }
 
+/// The folder of a file in a package.
+fn parent_of(place: &str) -> &str {
+    place.rsplit_once('/').map_or("", |(folder, _)| folder)
+}
+
 impl CaseFile {
+    /// Whether a question learns from the logs in a folder.
+    fn reads_logs_in(&self, folder: &Path) -> bool {
+        let questions = self.variants.iter().flat_map(|variant| &variant.questions);
+        let mut logs = questions.flat_map(|question| match question {
+            Request::FineTune(request) => request.logs.iter().flat_map(|of| &of.logs).collect(),
+            _ => Vec::new(),
+        });
+        logs.any(|path| std::path::absolute(path).is_ok_and(|path| path == folder))
+    }
+
     /// Names of the networks that questions ask and that stand in no file, such as those that were just trained:
     /// no package has them, and nobody else can ask them.
     pub fn networks_in_no_file(&self) -> Vec<&str> {

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::ask::inputs::data_files::{files_of_data, folder_of_data};
 use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile, Variant};
 use crate::{EvidenceChoice, InputKind, Request};
@@ -22,19 +23,16 @@ const NOT_THERE: &str = "it was not there when the case was saved either";
 /// Files and folders below a folder that are looked at to find out where it leads.
 const MAX_ENTRIES: usize = 500_000;
 
-/// Links to folders that are followed below a folder.
-const MAX_LINKS: usize = 1000;
-
 /// A file or a folder that a case uses, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct UsedFile {
     /// The file or folder.
     pub path: PathBuf,
-    /// Size of the file, or of all files in the folder, bytes.
+    /// Size of the file, or of all files that are read in the folder, bytes.
     pub bytes: u64,
-    /// SHA-256 of the content of a file, hexadecimal; of a folder, of a list of its files with their
-    /// names and digests. Names that begin with a point are left out.
+    /// SHA-256 of the content of a file, hexadecimal; of a folder, or of the table of cases in it, of a list of
+    /// the files that are read there with their names and digests.
     pub sha256: String,
 }
 
@@ -87,60 +85,36 @@ impl fmt::Display for Change {
 }
 
 impl UsedFile {
-    /// Reads a file, or every file in a folder, to its end.
+    /// Reads a file, or every file of the data in a folder, to its end.
     ///
     /// # Errors
     /// The error of the operating system.
     pub fn read(path: &Path) -> io::Result<Self> {
-        let path = path.to_owned();
-        if !path.is_dir() {
-            let FileDigest { bytes, sha256, .. } = FileDigest::from_file("", &path)?;
-            return Ok(Self { path, bytes, sha256 });
-        }
+        let Some(folder) = folder_of_data(path) else {
+            let FileDigest { bytes, sha256, .. } = FileDigest::from_file("", path)?;
+            return Ok(Self { path: path.to_owned(), bytes, sha256 });
+        };
         let (mut list, mut bytes) = (String::new(), 0);
-        for name in files_in(&path)? {
-            let file = FileDigest::from_file(name.as_str(), &path.join(&name))?;
+        for (name, file) in named_below(folder, files_of_data(path)) {
+            let file = FileDigest::from_file(name.as_str(), &file)?;
             list.push_str(&format!("{}  {name}\n", file.sha256));
             bytes += file.bytes;
         }
-        Ok(Self { path, bytes, sha256: sha256_hex([list.as_bytes()]) })
+        Ok(Self { path: path.to_owned(), bytes, sha256: sha256_hex([list.as_bytes()]) })
     }
 }
 
-/// Names of all files in a folder and the folders in it, in their order, with `/` between the parts. Links are
-/// followed, but for those that lead round in a circle. What begins with a point is left out.
-pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
-    let (mut names, mut n_links) = (Vec::new(), 0);
-    // Each with the folders that the links on the way to it lead to.
-    let mut open = vec![(String::new(), vec![folder.canonicalize()?])];
-    while let Some((prefix, led_to)) = open.pop() {
-        for entry in std::fs::read_dir(folder.join(&prefix))? {
-            let entry = entry?;
-            let name = entry.file_name().to_string_lossy().into_owned();
-            let (full, path) = (format!("{prefix}{name}"), entry.path());
-            if name.starts_with('.') {
-                continue;
-            }
-            if path.is_file() {
-                names.push(full);
-            } else if entry.file_type()?.is_dir() {
-                open.push((full + "/", led_to.clone()));
-            } else if path.is_dir() {
-                let (from, to) = (folder.join(&prefix).canonicalize()?, path.canonicalize()?);
-                if led_to.iter().chain([&from]).any(|of| of.starts_with(&to)) {
-                    continue;
-                }
-                n_links += 1;
-                if n_links > MAX_LINKS {
-                    let why = format!("has more than {MAX_LINKS} links to folders");
-                    return Err(io::Error::other(why));
-                }
-                open.push((full + "/", [led_to.as_slice(), &[to]].concat()));
-            }
-        }
-    }
-    names.sort();
-    Ok(names)
+/// Files below a folder by what they are called from there, with `/` between the parts, in the order of these
+/// names.
+pub(super) fn named_below(folder: &Path, files: Vec<PathBuf>) -> Vec<(String, PathBuf)> {
+    let named = |file: PathBuf| {
+        let below = file.strip_prefix(folder).unwrap_or(&file);
+        let parts: Vec<_> = below.iter().map(|part| part.to_string_lossy()).collect();
+        (parts.join("/"), file)
+    };
+    let mut named: Vec<_> = files.into_iter().map(named).collect();
+    named.sort();
+    named
 }
 
 /// Every link in a folder and the folders in it, none left out but what is behind a link; `None` if there is
@@ -396,14 +370,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let [set, far, zip, there] =
             ["set", "far", "a.zip", "there"].map(|name| folder.path().join(name));
-        for (path, text) in [(set.join("cases.csv"), "case\n1\n"), (far.join("1.csv"), "t\n0\n")] {
-            std::fs::create_dir(path.parent().unwrap()).unwrap();
+        let files = [
+            (set.join("cases.csv"), "case\n1\n"),
+            (far.join("1.csv"), "t\n0\n"),
+            (far.join("2.csv"), "of no row"),
+        ];
+        std::fs::create_dir(&set).unwrap();
+        std::fs::create_dir(&far).unwrap();
+        for (path, text) in files {
             std::fs::write(path, text).unwrap();
         }
         symlink(&far, set.join("forces")).unwrap();
         symlink(&set, set.join("round")).unwrap();
         symlink(&set, far.join("back")).unwrap();
-        assert_eq!(files_in(&set).unwrap(), ["cases.csv", "forces/1.csv"]);
         let before = UsedFile::read(&set).unwrap();
         let check = crate::CheckRequest { paths: vec![set.clone()], all: false, map: None };
         let questions = vec![Request::from(check)];

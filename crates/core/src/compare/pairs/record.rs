@@ -127,16 +127,22 @@ impl PairRecords {
             && ["cases", "vehicles"].iter().all(|folder| root.join(folder).is_dir())
     }
 
-    /// The files of a data set of pairs, in the order of their names. A folder that is none has none.
+    /// The files from which a data set of pairs is loaded, in the order of their names: the table of cases,
+    /// and the files of the cases and cars that it names. Others in the folder are not of the data set; a
+    /// folder that is none has none.
     pub fn files(root: &Path) -> Vec<PathBuf> {
         if !Self::is_at(root) {
             return Vec::new();
         }
-        let folders = ["cases", "vehicles"].map(|folder| std::fs::read_dir(root.join(folder)));
-        let inside = folders.into_iter().flatten().flatten().flatten().map(|entry| entry.path());
-        let mut files: Vec<PathBuf> = inside.chain([root.join(CASES_FILE)]).collect();
+        let mut files = vec![root.join(CASES_FILE)];
+        for (name, row) in Self::open(root).map(|records| records.rows).unwrap_or_default() {
+            files.push(case_file(root, &name));
+            let cars = PairAttributes::read(&row).cars.into_iter();
+            files.extend(cars.filter(|car| names_a_file(car)).map(|car| car_file(root, &car)));
+        }
         files.retain(|file| file.is_file());
         files.sort();
+        files.dedup();
         files
     }
 
@@ -174,7 +180,7 @@ impl PairRecords {
     fn load_row(&self, name: &str, row: &Attributes) -> Result<PairCase, PairCaseError> {
         let attributes = PairAttributes::read(row);
         let friction = row.require(&FRICTION, NO_PAIR)?;
-        let path = self.root.join("cases").join(format!("{name}.csv"));
+        let path = case_file(&self.root, name);
         let columns = Columns { table: Table::read(&path)? };
         let [struck, striking] = [0, 1].map(|i| self.car(row, CARS[i], &attributes.cars[i]));
         let cars = [struck?, striking?];
@@ -223,7 +229,7 @@ impl PairRecords {
             let expected = "the name of a file of the folder vehicles, without .toml";
             return Err(row.refused(column, format!("{name:?}"), expected.to_owned()).into());
         }
-        let path = self.root.join("vehicles").join(format!("{name}.toml"));
+        let path = car_file(&self.root, name);
         let text = TomlFile::read(&path)?;
         let vehicle = VehicleParameters::parse(&text, &path)?;
         let record: Option<MultibodyRecord> = TomlFile { path: &path, text: &text }.to().ok();
@@ -233,6 +239,16 @@ impl PairRecords {
             driven: record.as_ref().and_then(MultibodyRecord::driven_axle).unwrap_or_default(),
         })
     }
+}
+
+/// The file of a case in a data set of pairs.
+fn case_file(root: &Path, case: &str) -> PathBuf {
+    root.join("cases").join(format!("{case}.csv"))
+}
+
+/// The data sheet of a car in a data set of pairs.
+fn car_file(root: &Path, car: &str) -> PathBuf {
+    root.join("vehicles").join(format!("{car}.toml"))
 }
 
 impl PairCase {

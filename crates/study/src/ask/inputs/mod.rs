@@ -3,6 +3,7 @@
 mod cases;
 mod chosen_vehicle;
 mod config;
+pub(crate) mod data_files;
 mod file;
 mod input_file;
 mod input_kind;

@@ -3,12 +3,11 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use crate::ask::inputs::data_files::files_of_data;
 use crate::{
     ConfigChoice, Drive, ForceQuestion, ForceSource, ModelChoice, MotionSource, Request,
     ScenarioChoice, SeriesFile, SimulateRequest, TrainingOptions, VehicleChoice,
 };
-use impactlab_core::compare::PairRecords;
-use impactlab_core::data::Dataset;
 use impactlab_core::site::Site;
 
 /// A file or folder that a question names.
@@ -34,12 +33,12 @@ impl Request {
     /// found when the question is answered.
     pub fn input_files(&self) -> Vec<PathBuf> {
         let named = self.named().into_iter().filter(|named| named.role != Role::Network);
-        each_once(named.flat_map(Named::files).chain(self.staged_evidence()))
+        each_once(named.flat_map(Named::files))
     }
 
     /// Every file that the answer rests on: those of [`Request::input_files`] and trained networks.
     pub fn files_read(&self) -> Vec<PathBuf> {
-        each_once(self.named().into_iter().flat_map(Named::files).chain(self.staged_evidence()))
+        each_once(self.named().into_iter().flat_map(Named::files))
     }
 
     /// The files and folders that stand in the question, trained networks among them. Nothing is read.
@@ -62,13 +61,6 @@ impl Request {
     /// Whether the question trains a network.
     pub fn is_training(&self) -> bool {
         matches!(self, Self::TrainForce(_) | Self::TrainResponse(_) | Self::FineTune(_))
-    }
-
-    fn staged_evidence(&self) -> Vec<PathBuf> {
-        match self {
-            Self::EvaluateReconstruction(request) => request.evidence_files(),
-            _ => Vec::new(),
-        }
     }
 
     fn named(&self) -> Vec<Named> {
@@ -158,12 +150,11 @@ impl Named {
     fn files(self) -> Vec<PathBuf> {
         let Self { path, role } = self;
         match role {
-            _ if PairRecords::is_at(&path) => PairRecords::files(&path),
-            _ if path.is_dir() => Dataset::files(&path),
             Role::Site => {
                 std::iter::once(path.clone()).chain(Site::files_named_by(&path)).collect()
             }
-            Role::Input | Role::Network => vec![path],
+            Role::Network => vec![path],
+            Role::Input => files_of_data(&path),
         }
     }
 }

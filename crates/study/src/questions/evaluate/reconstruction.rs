@@ -137,16 +137,6 @@ impl EvaluateReconstructionRequest {
         }
     }
 
-    /// The files of the evidence of the cases; none if they cannot be told.
-    pub(crate) fn evidence_files(&self) -> Vec<PathBuf> {
-        let staged = StagedCollisions::open(&self.data);
-        let cases =
-            staged.as_ref().ok().and_then(|staged| Some((staged, self.cases(staged).ok()?)));
-        cases.map_or_else(Vec::new, |(staged, cases)| {
-            cases.iter().map(|case| staged.evidence_file(case)).collect()
-        })
-    }
-
     /// The estimates of all cases, as far as the observer lets it go, and why others have none.
     fn estimates(
         &self,

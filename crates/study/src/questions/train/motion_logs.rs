@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::StudyError;
 use crate::ask::checks::{check, check_contact, check_given};
+use crate::ask::inputs::data_files::{files_of_sets, logs_in};
 use crate::caveats::restrictions::{doubtful_data_caveats, doubtful_note_caveats};
 use crate::questions::simulate::drive::steer_history;
 use crate::questions::simulate::motion_source::acting_force;
 use impactlab_core::data::{
-    Channel, ColumnMap, ForceHistory, Loaded, list_folder, read_any_series, read_motion_log,
+    Channel, ColumnMap, ForceHistory, Loaded, read_any_series, read_motion_log,
 };
 use impactlab_core::ranges::{INSTANT, LOG_DURATION, STEERING_RATIO};
 use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject, Caveats};
@@ -167,14 +168,13 @@ impl MotionLogs {
                 paths.push(path.clone());
                 continue;
             }
-            let mut files = list_folder(path)?;
-            files
-                .retain(|file| file.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv")));
-            if files.is_empty() {
+            // What a case rests on is known by the folder alone, and data sets come first there.
+            let has_sets = !files_of_sets(path).is_empty();
+            let logs = if has_sets { Vec::new() } else { logs_in(path)? };
+            if logs.is_empty() {
                 return Err(StudyError::NoLogs { path: path.clone() });
             }
-            files.sort();
-            paths.extend(files);
+            paths.extend(logs);
         }
         Ok(paths)
     }
