@@ -119,3 +119,22 @@ fn a_package_that_is_not_what_was_packed_is_told() {
         assert!(to.join("a.impactlab").is_file(), "it is unpacked all the same");
     }
 }
+
+/// The check of a data set that cannot be read was “answered”, with exit code 0.
+#[test]
+fn a_check_that_finds_something_wrong_is_no_success_in_a_case_either() {
+    let folder = folder_with(&json!([{"question": "check", "paths": ["./broken.csv"]}]));
+    let here = folder.path();
+    fs::write(here.join("case/broken.csv"), "t [s],Fx [N],Fy [N]\n0,0,x\n").unwrap();
+    let output = program().current_dir(here).args(RUN).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("problem  ") && told.contains("broken.csv:1: rows"), "{told}");
+    let report = program().current_dir(here).args(REPORT).output().unwrap();
+    assert_eq!(report.status.code(), Some(1));
+    let request = json!({"question": "check", "paths": ["case/broken.csv"]});
+    fs::write(here.join("request.json"), request.to_string()).unwrap();
+    let asked = program().current_dir(here).args(["ask", "request.json"]).output().unwrap();
+    assert_eq!(asked.status.code(), Some(1));
+    assert_eq!(json(&String::from_utf8(asked.stdout).unwrap())["ok"], false);
+}

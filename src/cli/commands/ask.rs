@@ -24,7 +24,9 @@ Example:
   impactlab ask request.json
 
 The answer is JSON: the same as the command of the question prints with --json. A training writes
-its model only through its own command.";
+its model only through its own command.
+
+Exit code 1 if there is no answer, or one that the command of the question ends with 1 for too.";
 
 /// Answers the question and prints the report.
 pub(in crate::cli) fn run(args: &AskArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
@@ -43,5 +45,5 @@ pub(in crate::cli) fn run(args: &AskArgs, console: &mut Console<'_>) -> Result<V
     let report = under_bar(|observer| request.run(&console.library, observer))?;
     let report = report.complete().ok_or(CliError::Cancelled)?;
     print_json(console.out, &report)?;
-    Ok(Verdict::Clean)
+    Ok(Verdict::from_problems(report.has_problems()))
 }

@@ -56,7 +56,7 @@ Example:
 
 JSON: impactlab schema case --answer says every key with its unit
 
-Exit code 1 if a question has no answer, or if the case, a file or a network is not what it was when the
+Exit code 1 if a question has no answer, or one that its own command ends with 1 for too, or if the case, a file or a network is not what it was when the
 case was saved.";
 
 /// Say what is in a case, and whether its files are what they were
@@ -292,6 +292,7 @@ fn print_question(
     units: UnitSystem,
 ) -> io::Result<()> {
     match (&answer.report, &answer.error) {
+        (Some(Report::Check(report)), _) => print_answer(out, &**report, units),
         (Some(Report::Impact(report)), _) => print_answer(out, &**report, units),
         (Some(Report::Hand(report)), _) => print_answer(out, &**report, units),
         (Some(Report::Replay(report)), _) => print_answer(out, &**report, units),

@@ -9,7 +9,7 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::text::print_answer;
 use impactlab_core::data::ColumnMap;
 use impactlab_core::units::UnitSystem;
-use impactlab_study::CheckRequest;
+use impactlab_study::{CheckRequest, Question};
 
 /// Say what is in files and data sets, in which units, and what is wrong with them
 #[derive(Debug, Args)]
@@ -45,5 +45,5 @@ pub(in crate::cli) fn run(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let units = UnitSystem::default();
     console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
-    Ok(Verdict::from_problems(!answer.report.ok))
+    Ok(Verdict::from_problems(CheckRequest::has_problems(&answer.report)))
 }

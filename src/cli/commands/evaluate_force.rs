@@ -13,7 +13,7 @@ use impactlab_core::ranges::FOLDS;
 use impactlab_core::units::UnitSystem;
 use impactlab_networks::force::ColumnSet;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::{EvaluateForceRequest, EvaluatedCases, ForceEvaluation};
+use impactlab_study::{EvaluateForceRequest, EvaluatedCases, Question};
 
 /// What is known of a scenario.
 const COLUMNS: Words<ColumnSet> = &[
@@ -93,10 +93,5 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let units = UnitSystem::default();
     console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
-    Ok(match &answer.report.report {
-        ForceEvaluation::Cases(report) => {
-            Verdict::from_problems(!report.evaluation.problems.is_empty())
-        }
-        ForceEvaluation::Folds(_) => Verdict::Clean,
-    })
+    Ok(Verdict::from_problems(EvaluateForceRequest::has_problems(&answer.report)))
 }

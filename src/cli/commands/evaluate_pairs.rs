@@ -11,7 +11,7 @@ use crate::cli::text::print_answer;
 use impactlab_core::ranges::DRAWS;
 use impactlab_core::units::UnitSystem;
 use impactlab_networks::shipped::ModelSource;
-use impactlab_study::{EvaluatePairsRequest, PairSplit};
+use impactlab_study::{EvaluatePairsRequest, PairSplit, Question};
 
 /// Which cases of the folder.
 const CASES: Values<PairSplit> = &[
@@ -82,5 +82,5 @@ pub(in crate::cli) fn run(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let units = args.units;
     console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
-    Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
+    Ok(Verdict::from_problems(EvaluatePairsRequest::has_problems(&answer.report)))
 }

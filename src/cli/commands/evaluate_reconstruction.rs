@@ -12,7 +12,7 @@ use crate::cli::text::print_answer;
 use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
 use impactlab_core::units::UnitSystem;
 use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
-use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
+use impactlab_study::{EvaluateReconstructionRequest, Question, ReconstructRequest};
 
 /// How much of the evidence is used.
 const KNOWN: Values<KnownEvidence> = &[
@@ -101,5 +101,5 @@ pub(in crate::cli) fn run(
     let Some(answer) = answer else { return Ok(Verdict::Clean) };
     let units = args.units;
     console.print(&answer.report, |out| print_answer(out, &answer.report, units))?;
-    Ok(Verdict::from_problems(!answer.report.left_out.is_empty()))
+    Ok(Verdict::from_problems(EvaluateReconstructionRequest::has_problems(&answer.report)))
 }

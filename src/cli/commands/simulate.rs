@@ -25,8 +25,8 @@ use impactlab_core::units::UnitSystem;
 use impactlab_core::vehicle::{ContactPoint, Equations, Integrator};
 use impactlab_study::analysis::PulseSetup;
 use impactlab_study::{
-    DEFAULT_DURATION_S, Drive, MotionSource, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
-    SimulateRequest,
+    DEFAULT_DURATION_S, Drive, MotionSource, Question, ScenarioChoice, SeriesFile,
+    SimulateDatasetRequest, SimulateRequest,
 };
 
 /// Simulate the motion after an impact, or compare a whole data set with the simulation
@@ -303,7 +303,7 @@ fn simulate_dataset(
     console.print(&printed, |text| {
         print_answer(text, PrintedAnswer::from(report).written(out), args.units)
     })?;
-    Ok(Verdict::from_problems(!report.failures.is_empty()))
+    Ok(Verdict::from_problems(SimulateDatasetRequest::has_problems(report)))
 }
 
 /// What drives the motion of a single vehicle.

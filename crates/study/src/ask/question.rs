@@ -83,6 +83,12 @@ pub trait Question: Clone + PartialEq + Send + 'static {
     /// The report of an answer.
     fn report(answer: &Self::Answer) -> &Self::Report;
 
+    /// Whether the answer says of what was asked that something is wrong with it, such as of a data set that
+    /// cases of it cannot be read: a program that asks is told so beside the answer.
+    fn has_problems(_report: &Self::Report) -> bool {
+        false
+    }
+
     /// Checks the question, answers it, and checks that every number of the report is finite.
     ///
     /// - `library`: models and data that are in memory already; an empty one reads everything from

@@ -53,6 +53,14 @@ macro_rules! questions {
                     $(Self::$variant(answer) => &answer.provenance,)+
                 }
             }
+
+            /// Whether the answer says that something is wrong with what was asked of
+            /// ([`Question::has_problems`]).
+            pub fn has_problems(&self) -> bool {
+                match self {
+                    $(Self::$variant(answer) => <$request>::has_problems(answer),)+
+                }
+            }
         }
 
         impl AnyAnswer {

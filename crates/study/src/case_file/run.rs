@@ -157,10 +157,14 @@ impl VariantReport {
 }
 
 impl CaseReport {
-    /// Whether every question has an answer and nothing has changed since the case was saved.
+    /// Whether every question has an answer in which nothing is wrong with what was asked of, and nothing has
+    /// changed since the case was saved.
     pub fn is_clean(&self) -> bool {
         let mut answers = self.variants.iter().flat_map(|variant| &variant.answers);
-        self.changes.is_empty() && answers.all(|answer| answer.error.is_none())
+        let is_clean = |answer: &AnsweredQuestion| {
+            answer.report.as_ref().is_some_and(|report| !report.has_problems())
+        };
+        self.changes.is_empty() && answers.all(is_clean)
     }
 
     /// The networks that have answered.

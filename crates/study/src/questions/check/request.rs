@@ -95,6 +95,10 @@ impl Question for CheckRequest {
         &answer.report
     }
 
+    fn has_problems(report: &Self::Report) -> bool {
+        !report.ok
+    }
+
     fn solve(
         &self,
         _library: &Library,

@@ -167,6 +167,13 @@ impl Question for EvaluateForceRequest {
         &answer.report
     }
 
+    fn has_problems(report: &Self::Report) -> bool {
+        match &report.report {
+            ForceEvaluation::Cases(of_cases) => !of_cases.evaluation.problems.is_empty(),
+            ForceEvaluation::Folds(_) => false,
+        }
+    }
+
     fn solve(
         &self,
         library: &Library,

@@ -260,6 +260,10 @@ impl Question for EvaluatePairsRequest {
         &answer.report
     }
 
+    fn has_problems(report: &Self::Report) -> bool {
+        !report.left_out.is_empty()
+    }
+
     fn solve(
         &self,
         library: &Library,

@@ -214,6 +214,10 @@ impl Question for EvaluateReconstructionRequest {
         &answer.report
     }
 
+    fn has_problems(report: &Self::Report) -> bool {
+        !report.left_out.is_empty()
+    }
+
     fn solve(
         &self,
         library: &Library,

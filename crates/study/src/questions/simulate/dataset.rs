@@ -115,6 +115,10 @@ impl Question for SimulateDatasetRequest {
         &answer.report
     }
 
+    fn has_problems(report: &Self::Report) -> bool {
+        !report.failures.is_empty()
+    }
+
     fn solve(
         &self,
         library: &Library,
