@@ -8,11 +8,12 @@ use crate::modes::modes_by;
 use crate::quantity::{LEVELS, PosteriorPoint};
 use crate::sampler::Particles;
 use crate::{
-    EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, QuantityEstimate,
-    ReconstructedQuantity, ReconstructionTarget,
+    EvidenceFit, ForwardModel, HandSpeed, ImpactState, Latent, LatentValues, Narrowing,
+    QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
 };
+use impactlab_core::collision::{BodyAfter, ImpactSolution};
 use impactlab_core::numerics::quantile_of_sorted;
-use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
+use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 
 /// Independent particles that an interval needs: five of these then lie beyond each end of the interval
 /// of 90 %. With fewer the ends are those of single particles.
@@ -113,6 +114,25 @@ impl Posterior {
     /// Values of a quantity, one for each particle.
     pub fn values(&self, quantity: ReconstructedQuantity) -> Vec<f64> {
         self.points().map(|point| quantity.value(&point)).collect()
+    }
+
+    /// The speed that a check by hand gives, as the particles have it; `None` where these are too few for an
+    /// interval, or the case has no such speed.
+    pub fn speed_of(&self, checked: HandSpeed) -> Option<Estimate> {
+        let after = |body: fn(&ImpactSolution) -> &BodyAfter| -> Vec<f64> {
+            let bodies = self.impacts.iter().flatten().map(|impact| body(&impact.solution));
+            bodies.map(|BodyAfter { velocity_world_m_s: [x, y], .. }| x.hypot(*y)).collect()
+        };
+        let mut speeds = match checked {
+            HandSpeed::StruckAfter => after(|solution| &solution.struck),
+            HandSpeed::StrikingAfter => after(|solution| &solution.striking),
+            HandSpeed::Struck => self.values(ReconstructedQuantity::StruckSpeed),
+            HandSpeed::Striking => self.values(ReconstructedQuantity::StrikingSpeed),
+            HandSpeed::AtStart => self.values(ReconstructedQuantity::CarSpeed),
+        };
+        speeds.retain(|speed| speed.is_finite());
+        let has_interval = self.ess >= LEAST_ESS_FOR_INTERVALS && !speeds.is_empty();
+        has_interval.then(|| Estimate::from_draws(speeds))
     }
 
     /// Whether it is that of a single car, which has no impact.

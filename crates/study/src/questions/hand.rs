@@ -302,34 +302,35 @@ fn caveats(answer: &HandAnswer, draws: usize, bias: Option<&YawMarkBias>) -> Cav
     let is_assumed =
         |of: &&HandNumber| of.is_sigma_assumed && !of.is_value_assumed && of.sigma > 0.0;
     all.extend(answer.numbers.iter().filter(is_assumed).map(assumed_sigma));
-    let phrase = Phrase::new(
-        "each input is normal about its value, cut off at the limits of its range and independent of the others",
-        "Jede Eingabe ist normalverteilt um ihren Wert, an den Grenzen ihres Bereichs abgeschnitten und unabhängig \
-         von den anderen",
-    );
-    all.extend((!is_exact).then(|| Caveat::new(CaveatKind::Note, phrase)));
-    all.extend(off_together(&answer.numbers));
+    all.extend((!is_exact).then(|| how_drawn(&answer.numbers)));
     all.into_iter().collect()
 }
 
-/// That inputs whose standard deviations stand in one rule are off together where that is wider, if there are
-/// several.
-fn off_together(numbers: &[HandNumber]) -> Option<Caveat> {
+/// How the inputs are drawn. Those whose standard deviations stand in one rule are off together where that is
+/// wider, if there are several.
+fn how_drawn(numbers: &[HandNumber]) -> Caveat {
     let of_rule = numbers.iter().filter(|number| number.rule().is_some() && number.sigma > 0.0);
     let labels: Vec<Phrase> = of_rule
         .map(|number| Phrase::of(PhraseValue::Term(number.field.label.to_owned())))
         .collect();
-    (labels.len() > 1).then(|| {
-        let phrase = Phrase::new(
-            "no standard deviation is stated of these, and one rule of the program stands for all of them; their \
-             errors are drawn together or independently, whichever gives a result the wider interval: {0}",
-            "Für diese Eingaben ist keine Standardabweichung angegeben, und für alle gilt eine Regel des \
-             Programms; ihre Fehler sind gemeinsam oder unabhängig voneinander gezogen, je nachdem, was den \
-             breiteren Bereich eines Ergebnisses ergibt: {0}",
+    let phrase = match labels.len() {
+        0 | 1 => Phrase::new(
+            "each input is normal about its value, cut off at the limits of its range and independent of the others",
+            "Jede Eingabe ist normalverteilt um ihren Wert, an den Grenzen ihres Bereichs abgeschnitten und \
+             unabhängig von den anderen",
+        ),
+        _ => Phrase::new(
+            "each input is normal about its value, cut off at the limits of its range and independent of the others, \
+             but for these, of which no standard deviation is stated and one rule of the program stands for all: \
+             {0}; their errors are drawn together or independently, whichever gives a result the wider interval",
+            "Jede Eingabe ist normalverteilt um ihren Wert, an den Grenzen ihres Bereichs abgeschnitten und \
+             unabhängig von den anderen, außer diesen, für die keine Standardabweichung angegeben ist und eine \
+             Regel des Programms für alle gilt: {0}. Deren Fehler sind gemeinsam oder unabhängig voneinander \
+             gezogen, je nachdem, was den breiteren Bereich eines Ergebnisses ergibt",
         )
-        .with(PhraseValue::phrase(Phrase::joined(labels, "; ")));
-        Caveat::new(CaveatKind::Note, phrase)
-    })
+        .with(PhraseValue::phrase(Phrase::joined(labels, "; "))),
+    };
+    Caveat::new(CaveatKind::Note, phrase)
 }
 
 /// Draws in which the inputs do not go together, such as those of an impact that would gain energy.

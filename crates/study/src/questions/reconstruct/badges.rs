@@ -8,11 +8,15 @@ use impactlab_reconstruct::evaluate::KnownEvidence;
 use impactlab_reconstruct::evidence::{After, Evidence, Mark, MarkKind, YesNoUnknown};
 use impactlab_reconstruct::sampler::Particles;
 use impactlab_reconstruct::{
-    EvidenceFit, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode, ReconstructedQuantity,
+    EvidenceFit, HandCheck, LEAST_ESS_FOR_INTERVALS, LeftOut, Mode, Posterior,
+    ReconstructedQuantity,
 };
 
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
+
+/// Half the width of the interval of 90 % of a normal quantity, standard deviations.
+const NORMAL_90: f64 = 1.645;
 
 /// Sum of probabilities below 1 that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -207,6 +211,41 @@ pub(super) fn beside_locked_marks(evidence: &Evidence) -> Option<Caveat> {
         odd.iter().any(|after| after.anti_lock == YesNoUnknown::Yes).then_some(of_brakes)?
     };
     Some(Caveat::new(CaveatKind::Disagreement, text))
+}
+
+/// Checks by hand whose interval of 90 % has nothing in common with that of the answer: one of them rests on
+/// something that is not so.
+pub(super) fn apart_by_hand(by_hand: &[HandCheck], posterior: &Posterior) -> Option<Caveat> {
+    let apart = |check: &HandCheck| {
+        let answer = posterior.speed_of(check.speed)?;
+        let [low, high] = answer.ninety();
+        let reach = NORMAL_90 * check.sigma_m_s;
+        let is_apart = check.value_m_s + reach < low || high < check.value_m_s - reach;
+        let by_hand = [check.value_m_s - reach, check.value_m_s + reach];
+        let by_hand = PhraseValue::Estimate {
+            quantity: Quantity::Speed,
+            median: check.value_m_s,
+            ninety: Some(by_hand),
+        };
+        let phrase = Phrase::new("{0} {1} by hand and {2} here", "{0} {1} von Hand und {2} hier")
+            .with(PhraseValue::Term(check.speed.label().to_owned()))
+            .with(by_hand)
+            .with(PhraseValue::estimate(Quantity::Speed, &answer));
+        is_apart.then_some(phrase)
+    };
+    let apart: Vec<Phrase> = by_hand.iter().filter_map(apart).collect();
+    (!apart.is_empty()).then(|| {
+        let text = Phrase::new(
+            "a calculation by hand and the reconstruction do not agree, as their intervals of 90 % have nothing in \
+             common: {0}; either the condition of the calculation does not hold, or a part of the evidence is \
+             misread",
+            "Eine Rechnung von Hand und die Rekonstruktion widersprechen sich, ihre 90-%-Intervalle haben nichts \
+             gemeinsam: {0}. Entweder trifft die Voraussetzung der Rechnung nicht zu, oder eine Anknüpfungstatsache \
+             ist falsch gelesen",
+        )
+        .with(PhraseValue::phrase(Phrase::joined(apart, "; ")));
+        Caveat::new(CaveatKind::Disagreement, text)
+    })
 }
 
 /// Parts of the evidence that the others contradict, though the answer follows them.

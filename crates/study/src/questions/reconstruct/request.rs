@@ -13,7 +13,8 @@ use crate::caveats::bodies::unusual as unusual_sheet;
 use crate::caveats::restrictions::slope_caveat;
 use crate::questions::reconstruct::assumed::{assumptions, unused};
 use crate::questions::reconstruct::badges::{
-    beside_locked_marks, of_fit, of_left_out, of_particles, of_validation, several_courses,
+    apart_by_hand, beside_locked_marks, of_fit, of_left_out, of_particles, of_validation,
+    several_courses,
 };
 use crate::questions::reconstruct::cut_off::cut_off;
 use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot, not_looked_for};
@@ -409,6 +410,7 @@ impl ReconstructRequest {
         let mut by_hand = HandCheck::all(target.evidence(), cars, ground);
         // They know no slope.
         by_hand.retain(|_| cars.struck.parameters.slope.is_level());
+        let apart_by_hand = apart_by_hand(&by_hand, &posterior);
         let before = [HandSpeed::Struck, HandSpeed::AtStart];
         let before = by_hand.iter().find(|check| before.contains(&check.speed));
         let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
@@ -417,7 +419,7 @@ impl ReconstructRequest {
             caveats.extend(later_contacts.map_or_else(not_looked_for, |later| later.caveat()));
         }
         let modes = posterior.modes(&particles, &turned_rad);
-        caveats.extend(several_courses(&modes).into_iter().chain(outside));
+        caveats.extend(several_courses(&modes).into_iter().chain(outside).chain(apart_by_hand));
         caveats.extend(slope_caveat(&target.model().cars().struck.parameters.slope));
         caveats.extend(of_fit(&fit).into_iter().chain(beside_locked_marks(&evidence)));
         let left_out = self.left_out(&target, &particles, &fit, observer);

@@ -4,9 +4,10 @@ use super::*;
 use crate::examples::spin;
 use crate::facts::{Term, Value};
 use crate::questions::reconstruct::assumed::assumptions;
+use crate::questions::reconstruct::badges::apart_by_hand;
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
 use impactlab_reconstruct::evidence::{Edr, Measured};
-use impactlab_reconstruct::{HingeInput, Latent};
+use impactlab_reconstruct::{HandCheck, HandSpeed, HingeInput, Latent};
 
 fn request(particles: usize) -> ReconstructRequest {
     let evidence = EvidenceChoice::Inline(Box::new(spin()));
@@ -213,4 +214,27 @@ fn the_slope_of_a_site_moves_the_cars_and_another_one_of_the_evidence_is_refused
     assert!(error.to_string().contains("another slope than the site"), "{error}");
     let alone = request(100).model(&evidence).unwrap();
     assert_eq!(alone.cars().struck.parameters.slope.grade, 0.05);
+}
+
+/// Both stood in the report, and nothing said that they do not agree.
+#[test]
+fn a_calculation_by_hand_that_the_answer_contradicts_is_a_warning() {
+    let mut posterior = answer(&request(120)).posterior;
+    let [low, high] = posterior.speed_of(HandSpeed::StruckAfter).unwrap().ninety();
+    let check = |value_m_s| HandCheck {
+        speed: HandSpeed::StruckAfter,
+        value_m_s,
+        sigma_m_s: 0.5,
+        holds: "",
+    };
+    assert_eq!(apart_by_hand(&[check(high + 0.8), check(low - 0.8)], &posterior), None);
+    for value_m_s in [high + 0.9, low - 0.9] {
+        let caveat = apart_by_hand(&[check(high), check(value_m_s)], &posterior).unwrap();
+        assert!(caveat.is_warning() && caveat.kind == CaveatKind::Disagreement, "{caveat}");
+        assert!(caveat.text.contains("struck car after the impact"), "{caveat}");
+        assert_eq!(caveat.text.matches("km/h by hand and").count(), 1, "{caveat}");
+    }
+    // Too few particles say nothing of how far the others reach.
+    posterior.ess = 50.0;
+    assert_eq!(apart_by_hand(&[check(high + 9.0)], &posterior), None);
 }
