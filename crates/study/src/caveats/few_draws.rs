@@ -47,7 +47,7 @@ pub(crate) fn few_draws(n_draws: usize, error: Option<&MonteCarloError>) -> Opti
     let is_much = share > MOST_CHANCE || share.is_nan();
     is_much.then(|| {
         Caveat::new(CaveatKind::FewDraws, text())
-            .with_value("standard error of an end over the width of the interval", share)
+            .with_value("error of an interval's end as a share of its width", share)
             .with_range([0.0, MOST_CHANCE])
     })
 }

@@ -499,7 +499,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
         "Abstand des Schwerpunkts von vorn als Anteil der Länge",
     ),
     (
-        "standard error of an end over the width of the interval",
+        "error of an interval's end as a share of its width",
         "Standardfehler eines Intervallendes als Anteil der Breite",
     ),
     ("speed at the end", "Geschwindigkeit am Ende"),
