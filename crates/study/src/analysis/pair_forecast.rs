@@ -102,6 +102,8 @@ pub struct BothVehicles {
     pub striking_outcome: MotionOutcome,
     /// Where, when and after what distance it comes to rest, of a motion that is followed to rest.
     pub striking_rest: Option<RestOutcome>,
+    /// How far the response network holds for it; wholly where the equations of motion stand alone.
+    pub striking_applicability: Applicability,
     /// What becomes of the struck vehicle, the likeliest first.
     pub courses: Vec<CourseShare>,
     /// When and how the vehicles are in contact.
@@ -191,6 +193,10 @@ pub fn forecast_both(
         striking_central: striking.central,
         striking_outcome: striking.outcome,
         striking_rest: striking.rest,
+        striking_applicability: match question.is_corrected[1] {
+            true => of_drawn(&drawn[1].applicabilities, &drawn[1].of_median),
+            false => Applicability::whole(),
+        },
         courses: found.courses(),
         contacts: ContactsOutcome::new(&found, duration_s),
     };

@@ -1,11 +1,36 @@
 //! Where a motion lies outside of what the response network has learned from.
 
-use impactlab_core::uncertainty::{Caveat, CaveatKind};
+use crate::PredictMotionReport;
+use impactlab_core::uncertainty::{Caveat, CaveatKind, CaveatSubject};
 use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_networks::response::OutsideDomain;
 
 /// Share of the response network below which it is told that a part of the draws lies outside.
 const LEAST_APPLICABILITY: f64 = 0.95;
+
+/// What lies outside of what the response network has learned from: of the struck vehicle, and of the striking one
+/// what is not that of both, as their road is.
+pub(super) fn outside_domain_caveats(report: &PredictMotionReport) -> Vec<Caveat> {
+    let of_vehicle = |applicability: f64, outside: &[OutsideDomain]| -> Vec<Caveat> {
+        let partly = partly_outside_caveat(applicability, outside);
+        outside.iter().map(outside_domain_caveat).chain(partly).collect()
+    };
+    let struck = of_vehicle(report.applicability, &report.outside_domain);
+    let striking = report.striking.iter();
+    let striking = striking.flat_map(|it| of_vehicle(it.applicability, &it.outside_domain));
+    let striking: Vec<Caveat> =
+        striking.filter(|caveat| !struck.contains(caveat)).map(of_striking).collect();
+    struck.into_iter().chain(striking).collect()
+}
+
+/// The same of the striking vehicle.
+fn of_striking(caveat: Caveat) -> Caveat {
+    let Some(statement) = caveat.text_phrase.clone() else { return caveat };
+    let text = Phrase::new("of the striking vehicle, {0}", "stoßendes Fahrzeug: {0}");
+    let text = text.with(PhraseValue::phrase(statement));
+    let Caveat { text, text_phrase, .. } = Caveat::new(caveat.kind, text);
+    Caveat { text, text_phrase, subject: Some(CaveatSubject::Striking), ..caveat }
+}
 
 /// A quantity of a motion that lies outside what a response network has learned from.
 pub(super) fn outside_domain_caveat(outside: &OutsideDomain) -> Caveat {
@@ -47,7 +72,46 @@ pub(super) fn partly_outside_caveat(
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
+    use crate::analysis::PulseSetup;
+    use crate::{
+        ForceSource, Library, MotionSource, PredictMotionRequest, Question, ScenarioChoice,
+    };
+    use impactlab_core::collision::Scenario;
+    use impactlab_core::units::{Language, NumberFormat, UnitSystem};
+
+    /// A striking vehicle of 6 t, of which the network knows nothing, was told to end within 90 % intervals
+    /// without a word.
+    #[test]
+    fn what_lies_outside_of_the_striking_vehicle_is_told_as_its_own() {
+        let mut scenario = Scenario::example();
+        (scenario.striking.mass_kg, scenario.striking.yaw_inertia_kg_m2) = (6000.0, 11_000.0);
+        let scenario = ScenarioChoice::Inline(Box::new(scenario));
+        let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+        let force = ForceSource::usual(&source);
+        let mut request =
+            PredictMotionRequest { draws: 4, ..PredictMotionRequest::new(source, force) };
+        (request.motion.friction, request.motion.duration_s) = (Some(0.1), 1.0);
+        let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+        let answer = request.answer(&Library::default(), &mut go_on).unwrap();
+        let report = answer.complete().unwrap().report;
+        assert!(report.report.striking.as_ref().unwrap().applicability < 0.5, "{report:?}");
+        let named = |quantity: &str| {
+            let is_it = |caveat: &&Caveat| caveat.quantity.as_deref() == Some(quantity);
+            report.caveats.iter().filter(is_it).collect::<Vec<_>>()
+        };
+        let [heavy] = named("mass [kg]")[..] else { panic!("{:?}", report.caveats) };
+        assert!(heavy.text.starts_with("of the striking vehicle, mass [kg] is 6000"), "{heavy}");
+        assert!(heavy.is_warning() && heavy.subject == Some(CaveatSubject::Striking));
+        let german = NumberFormat { units: UnitSystem::Si, language: Language::De };
+        let told = heavy.text_in(&german, &str::to_owned).unwrap();
+        assert!(told.starts_with("stoßendes Fahrzeug: ") && told.contains("beträgt 6"), "{told}");
+        // The road is that of both.
+        let [ground] = named("friction")[..] else { panic!("{:?}", report.caveats) };
+        assert_eq!(ground.subject, None);
+    }
 
     /// The share of the network was 85 % of a Camry by its sheet, and nothing said why.
     #[test]

@@ -1,7 +1,7 @@
 //! What restricts an answer: findings that a report has in a form of its own, as caveats.
 
 use crate::analysis::{RestOutcome, Rival, RivalForce};
-use crate::caveats::domain::{outside_domain_caveat, partly_outside_caveat};
+use crate::caveats::domain::outside_domain_caveats;
 use crate::caveats::few_draws::{few_draws, independent_draws};
 use crate::questions::predict::implied_contact::{
     LEAST_P_RIGID, MOST_P_ENERGY_GAIN, warning_phrase,
@@ -303,8 +303,7 @@ pub(crate) fn predicted_motion_caveats(
     report: &PredictMotionReport,
     predicted: &[Caveat],
 ) -> Vec<Caveat> {
-    let partly = partly_outside_caveat(report.applicability, &report.outside_domain);
-    let domain = report.outside_domain.iter().map(outside_domain_caveat).chain(partly);
+    let domain = outside_domain_caveats(report);
     let contact = report.implied_contact.as_ref().and_then(contact_caveat);
     let flags = report.flags.iter().map(|flag| flag.caveat.clone());
     let end = &report.outcome;
@@ -413,6 +412,7 @@ pub(crate) fn learned_case_caveat(kind: CaveatKind) -> Caveat {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::caveats::domain::outside_domain_caveat;
     use impactlab_core::units::{Language, NumberFormat, UnitSystem};
     use impactlab_networks::response::OutsideDomain;
     use std::path::Path;

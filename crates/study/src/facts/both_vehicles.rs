@@ -177,6 +177,9 @@ impl StrikingReport {
         let region = outcome.region_90_m2.filter(|_| self.rest.is_none());
         facts.extend(region.map(|area_m2| Fact::new(Term::Region90, Value::Area(area_m2))));
         facts.extend(outcome.monte_carlo.iter().flat_map(MonteCarloError::facts));
+        if self.applicability < 1.0 {
+            facts.push(Fact::new(Term::Applicability, Value::Share(self.applicability)));
+        }
         FactTable::new(Term::StrikingForecast, facts).with_levels(PREDICTED)
     }
 }

@@ -142,6 +142,10 @@ pub struct StrikingReport {
     pub outcome: MotionOutcome,
     /// Where, when and after what distance it comes to rest; none unless the question asks for it.
     pub rest: Option<RestOutcome>,
+    /// How far the response network holds for its motion, 0 to 1.
+    pub applicability: f64,
+    /// Where it lies outside what the response network has learned from.
+    pub outside_domain: Vec<OutsideDomain>,
 }
 
 /// What is found out along the way and said with the answer.
@@ -474,6 +478,8 @@ impl PredictMotionRequest {
                     .map_or_else(String::new, |track| track.start.vehicle.name.clone()),
                 outcome: both.striking_outcome.clone(),
                 rest: both.striking_rest.clone(),
+                applicability: both.striking_applicability.value,
+                outside_domain: both.striking_applicability.outside.clone(),
             }),
             courses: both.map_or_else(Vec::new, |both| both.courses.clone()),
             contacts: both.map(|both| both.contacts.clone()),
