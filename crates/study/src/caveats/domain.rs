@@ -6,7 +6,7 @@ use impactlab_core::units::{Phrase, PhraseValue};
 use impactlab_networks::response::OutsideDomain;
 
 /// Share of the response network below which it is told that a part of the draws lies outside.
-const LEAST_APPLICABILITY: f64 = 0.95;
+pub(crate) const LEAST_APPLICABILITY: f64 = 0.95;
 
 /// What lies outside of what the response network has learned from: of the struck vehicle, and of the striking one
 /// what is not that of both, as their road is.

@@ -3,7 +3,7 @@
 pub(crate) mod assumed;
 pub(crate) mod bodies;
 pub(crate) mod covered;
-mod domain;
+pub(crate) mod domain;
 pub(crate) mod driver;
 pub(crate) mod few_draws;
 pub(crate) mod other_vehicle;

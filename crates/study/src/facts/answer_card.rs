@@ -6,9 +6,8 @@ use impactlab_core::units::Quantity;
 use crate::PredictMotionReport;
 use crate::analysis::PlaceChance;
 use crate::facts::answer::{name_of, place_at};
-use crate::facts::held::measurement_of;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::measured::{HeldIntervals, Measured};
+use crate::measured::HeldIntervals;
 
 /// Lanes, kerbs and zones that are named of each vehicle.
 const N_PLACES: usize = 2;
@@ -118,12 +117,7 @@ impl PredictMotionReport {
 
     /// The quantity whose intervals of 90 % held least often; none where that was not counted.
     fn worst_held(&self) -> Option<&'static HeldIntervals> {
-        let subject = match self.contacts {
-            Some(_) => Measured::Pairs,
-            None => Measured::ResponseNetwork,
-        };
-        let measured = measurement_of(subject, &self.response_model);
-        let held = measured.filter(|_| self.is_measured())?.held_of(Some(self.tried_motion));
+        let held = self.measurement()?.held_of(Some(self.tried_motion));
         held.into_iter().min_by(|a, b| a.share_in_90().total_cmp(&b.share_in_90()))
     }
 

@@ -6,13 +6,14 @@ use impactlab_networks::response::LEAST_MOTIONS;
 use crate::analysis::{
     ContactsOutcome, MonteCarloError, MotionOutcome, PlaceChance, RestOutcome, Rival, RivalForce,
 };
+use crate::caveats::domain::LEAST_APPLICABILITY;
 use crate::facts::answer::name_of;
 use crate::facts::both_vehicles::course_table;
-use crate::facts::held::held_intervals;
+use crate::facts::held::measurement_of;
 use crate::facts::simulate::sensitivity;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::measured::Measured;
+use crate::measured::{Measured, Measurement};
 use crate::{FlagReport, PredictMotionReport, StrikingReport};
 
 impl PredictMotionReport {
@@ -33,17 +34,26 @@ impl PredictMotionReport {
 
     /// How often such intervals held; none where that was not measured on such forecasts.
     pub fn held_table(&self) -> Option<FactTable> {
-        let kind = Some(self.tried_motion);
-        match self.contacts {
-            Some(_) => held_intervals(Measured::Pairs, &self.response_model, kind),
-            None => held_intervals(Measured::ResponseNetwork, &self.response_model, kind)
-                .filter(|_| self.is_measured()),
-        }
+        self.measurement()?.held_table(Some(self.tried_motion))
     }
 
-    /// Whether it is a forecast of the kind of which it was counted how often intervals held.
-    pub(super) fn is_measured(&self) -> bool {
-        self.contacts.is_some() || (self.is_end_known() && self.applicability >= 1.0)
+    /// Where it was counted how often intervals of such forecasts held; none where it was not.
+    pub(super) fn measurement(&self) -> Option<&'static Measurement> {
+        let subject = match self.contacts {
+            Some(_) => Measured::Pairs,
+            None => Measured::ResponseNetwork,
+        };
+        measurement_of(subject, &self.response_model).filter(|_| self.is_measured())
+    }
+
+    /// Whether it is a forecast of the kind of which that was counted: the vehicles that were tried lie within what
+    /// the network has learned from.
+    fn is_measured(&self) -> bool {
+        if self.contacts.is_none() {
+            return self.is_end_known() && self.applicability >= 1.0;
+        }
+        let striking = self.striking.iter().map(|it| it.applicability);
+        striking.chain([self.applicability]).all(|share| share >= LEAST_APPLICABILITY)
     }
 
     /// What becomes of the struck vehicle; none where it was followed by itself.
@@ -242,8 +252,27 @@ impl PredictMotionReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::facts::FactWriter;
     use crate::facts::answer::tests::forecast;
     use impactlab_core::numerics::share_standard_error;
+    use impactlab_core::units::UnitSystem;
+
+    /// Of a car of 400 kg, of which the network has half a say, it was told that intervals had held in 45 of 48
+    /// motions of cars that it knows.
+    #[test]
+    fn what_held_is_not_told_of_vehicles_that_the_network_does_not_know() {
+        let report = forecast(None);
+        assert!(report.held_table().is_some());
+        let light = PredictMotionReport { applicability: 0.495, ..report.clone() };
+        let mut heavy = report;
+        heavy.striking.as_mut().unwrap().applicability = 0.02;
+        for report in [light, heavy] {
+            assert_eq!(report.held_table(), None);
+            let card = report.answer_card().to_text(&FactWriter::english(UnitSystem::Si));
+            let sureness = &card.rows[3].cells[1];
+            assert!(sureness.contains("it was not counted"), "{sureness}");
+        }
+    }
 
     #[test]
     fn many_vehicles_under_few_forces_do_not_make_a_chance_surer() {
