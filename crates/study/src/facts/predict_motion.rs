@@ -47,10 +47,11 @@ impl PredictMotionReport {
     }
 
     /// Whether it is a forecast of the kind of which that was counted: the vehicles that were tried lie within what
-    /// the network has learned from.
+    /// the network has learned from, and a single one was moved by a force that was known.
     fn is_measured(&self) -> bool {
         if self.contacts.is_none() {
-            return self.is_end_known() && self.applicability >= 1.0;
+            let is_force_known = self.force_model.is_none() && self.recorded.is_some();
+            return is_force_known && self.is_end_known() && self.applicability >= 1.0;
         }
         let striking = self.striking.iter().map(|it| it.applicability);
         striking.chain([self.applicability]).all(|share| share >= LEAST_APPLICABILITY)
@@ -254,6 +255,7 @@ mod tests {
     use super::*;
     use crate::facts::FactWriter;
     use crate::facts::answer::tests::forecast;
+    use crate::{ForceReport, RecordedImpulse, TriedMotion};
     use impactlab_core::numerics::share_standard_error;
     use impactlab_core::units::UnitSystem;
 
@@ -272,6 +274,39 @@ mod tests {
             let sureness = &card.rows[3].cells[1];
             assert!(sureness.contains("it was not counted"), "{sureness}");
         }
+    }
+
+    /// A car that a pulse of the momentum solution moves, whose impulse is off by a quarter, was told what had held
+    /// of cars under the force that was recorded.
+    #[test]
+    fn what_held_under_a_recorded_force_is_not_told_of_another_force() {
+        let force = ForceReport {
+            path: None,
+            sampling: "instant".to_owned(),
+            axes: "world".to_owned(),
+            impulse_n_s: [0.0, 3000.0],
+            peak_n: 6e4,
+            peak_time_s: 0.05,
+            pdof_deg: None,
+            pdof_clock: None,
+            contact_start_s: Some(0.0),
+            contact_end_s: Some(0.1),
+            yaw_moment: "recorded",
+        };
+        let (impulse_magnitude_n_s, delta_v_m_s) = (3000.0, 1.5);
+        let recorded = RecordedImpulse { force, impulse_magnitude_n_s, delta_v_m_s };
+        let predicted = PredictMotionReport {
+            contacts: None,
+            striking: None,
+            tried_motion: TriedMotion::Coasting,
+            recorded: Some(recorded),
+            ..forecast(None)
+        };
+        let by_record = PredictMotionReport { force_model: None, ..predicted.clone() };
+        let by_pulse = PredictMotionReport { recorded: None, ..by_record.clone() };
+        let is_told = |report: &PredictMotionReport| report.held_table().is_some();
+        assert!(predicted.force_model.is_some());
+        assert_eq!([&by_record, &by_pulse, &predicted].map(is_told), [true, false, false]);
     }
 
     #[test]
