@@ -116,7 +116,8 @@ pub enum TriedMotion {
     PushOnFlank,
     /// Both vehicles, of which one is hit across or from behind, as in a T-bone or a rear-end collision.
     AcrossOrBehind,
-    /// Both vehicles, of which one is hit in its front: no such pair was tried.
+    /// Both vehicles, of which one is hit in its front, comes towards the other, or stands or rolls back as its flank
+    /// is pushed: no such pair was tried.
     Untried,
 }
 

@@ -1,5 +1,7 @@
 //! A forecast of both vehicles of a scenario: where the force of the first contact comes from.
 
+use std::f64::consts::FRAC_PI_4;
+
 use crate::analysis::{
     Analysis, BothVehiclesQuestion, ContactPair, FirstContact, FirstForces, MotionForecast,
     MotionForecastSettings, PlaceChance, StruckVehicle, ended, forecast_both, in_world,
@@ -20,6 +22,7 @@ use impactlab_core::numerics::random_stream;
 use impactlab_core::site::Site;
 use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats, CurveMixture};
 use impactlab_core::units::{Phrase, PhraseValue};
+use impactlab_core::vehicle::REST_SPEED_M_S;
 use impactlab_networks::force::{ForcePrediction, ForceScenario, SHARE_OF_NETWORK};
 use impactlab_networks::response::ResponseModel;
 
@@ -119,11 +122,7 @@ impl PredictMotionRequest {
             MotionSource::Scenario { scenario: choice, .. } if follows_both => {
                 let collision = ForceScenario::from_scenario(&choice.load()?);
                 let collision = collision.map_err(|source| choice.unsolved(source))?;
-                Ok(match (collision.is_push_on_flank(), collision.is_hit_in_front()) {
-                    (true, _) => TriedMotion::PushOnFlank,
-                    (false, true) => TriedMotion::Untried,
-                    (false, false) => TriedMotion::AcrossOrBehind,
-                })
+                Ok(tried_collision(&collision))
             }
             _ if struck.controls.acts_on_wheels() => Ok(TriedMotion::Braked),
             _ => Ok(TriedMotion::Coasting),
@@ -263,6 +262,29 @@ impl FirstForces {
     }
 }
 
+/// Like which of the pairs that were tried a collision is. Of these both travelled, in a push on a flank within 45° of
+/// each other, and none came towards the other.
+fn tried_collision(collision: &ForceScenario) -> TriedMotion {
+    let angle_rad = angle_of_travel_rad(collision);
+    match (collision.is_push_on_flank(), collision.is_hit_in_front()) {
+        (true, _) if angle_rad.is_some_and(|angle_rad| angle_rad <= FRAC_PI_4) => {
+            TriedMotion::PushOnFlank
+        }
+        (false, false) if angle_rad.is_none_or(|angle_rad| angle_rad <= 3.0 * FRAC_PI_4) => {
+            TriedMotion::AcrossOrBehind
+        }
+        _ => TriedMotion::Untried,
+    }
+}
+
+/// Angle between the directions in which the vehicles travel, rad, 0 to π; `None` where one of them stands.
+fn angle_of_travel_rad(collision: &ForceScenario) -> Option<f64> {
+    let [a, b] = [collision.struck_velocity_m_s, collision.striking_velocity_m_s];
+    let is_moving = [a, b].iter().all(|[x, y]| x.hypot(*y) > REST_SPEED_M_S);
+    let [along, across] = [a[0] * b[0] + a[1] * b[1], a[0] * b[1] - a[1] * b[0]];
+    is_moving.then(|| across.atan2(along).abs())
+}
+
 /// What restricts a predicted force where the contact law stands for what the network does not say.
 ///
 /// - `has_pulses`: whether the momentum solution does so in half of these draws.
@@ -336,5 +358,36 @@ mod tests {
         assert_eq!(kind(Side::Right, 90.0, 12.0), (false, false));
         assert_eq!(kind(Side::Rear, 0.0, 22.0), (false, false));
         assert_eq!(kind(Side::Front, 180.0, 12.0), (false, true));
+    }
+
+    /// A standing car and one that rolled back were told how often regions had held of PITs, cars that scraped past
+    /// each other in opposite directions how often of T-bones.
+    #[test]
+    fn vehicles_that_do_not_travel_alike_are_like_none_that_was_tried() {
+        let tried = |side, heading_deg: f64, [struck_m_s, striking_m_s]: [f64; 2]| {
+            let mut scenario = Scenario::example();
+            let (sin, cos) = heading_deg.to_radians().sin_cos();
+            scenario.struck.vx_world_m_s = struck_m_s;
+            scenario.striking.heading_rad = heading_deg.to_radians();
+            scenario.striking.vx_world_m_s = striking_m_s * cos;
+            scenario.striking.vy_world_m_s = striking_m_s * sin;
+            scenario.contact.location = ContactLocation::Side { side, offset_m: 0.0 };
+            tried_collision(&ForceScenario::from_scenario(&scenario).unwrap())
+        };
+        use TriedMotion::{AcrossOrBehind, PushOnFlank, Untried};
+        for (side, heading_deg, speeds_m_s, expected) in [
+            (Side::Right, 18.0, [15.0, 17.0], PushOnFlank),
+            (Side::Right, 18.0, [0.0, 17.0], Untried),
+            (Side::Right, 18.0, [-5.0, 17.0], Untried),
+            (Side::Right, 90.0, [15.0, 12.0], AcrossOrBehind),
+            (Side::Right, 90.0, [0.0, 12.0], AcrossOrBehind),
+            (Side::Right, 180.0, [15.0, 17.0], Untried),
+            (Side::Rear, 0.0, [0.0, 22.0], AcrossOrBehind),
+            (Side::Rear, 0.0, [-5.0, 22.0], Untried),
+            (Side::Front, 180.0, [15.0, 12.0], Untried),
+        ] {
+            let found = tried(side, heading_deg, speeds_m_s);
+            assert_eq!(found, expected, "{side:?} {heading_deg} {speeds_m_s:?}");
+        }
     }
 }
