@@ -175,6 +175,7 @@ fn a_prediction_writes_trajectory_density_and_outcome() {
     let answer = predict("2", &beyond);
     let outcome = &answer["outcome"];
     assert!(outcome["x_m"]["median"].is_number() && outcome["x_m"]["intervals"] == value!([]));
+    assert!(outcome["p_quarter_turn"].is_null() && outcome["p_half_turn"].is_null(), "{outcome}");
     assert!(outcome["region_90_m2"].is_null() && !beyond.join("density.csv").exists());
     let rows = fs::read_to_string(beyond.join("trajectory.csv")).unwrap();
     let spread = |at: usize| rows.lines().nth(1 + at).unwrap().split(',').nth(3).unwrap().len();

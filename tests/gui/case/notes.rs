@@ -53,7 +53,7 @@ fn the_table_of_variants_has_notes_what_differs_and_how_likely_it_spins() {
     assert!(differs.iter().all(|text| text.starts_with("striking vehicle")), "{differs:?}");
     assert!(harness.query_all_by_label_contains(&differs[0]).next().is_some());
     let forecast = state(&harness).session.response.forecast.ok().expect("a forecast");
-    let turn = forecast.answer.report.outcome.p_quarter_turn;
+    let turn = forecast.answer.report.outcome.p_quarter_turn.expect("a probability");
     let turn = format!("{:.1} %", 100.0 * turn);
     assert!(harness.query_all_by_label_contains(&turn).next().is_some(), "{turn}");
 

@@ -134,10 +134,10 @@ pub struct MotionOutcome {
     /// Area of the smallest region that holds the position with a probability of 90 %, m²; none after a
     /// second contact, which is not computed.
     pub region_90_m2: Option<f64>,
-    /// Probability that the change of heading is at least 90° to either side at that time.
-    pub p_quarter_turn: f64,
-    /// Probability that the change of heading is at least 180° to either side at that time.
-    pub p_half_turn: f64,
+    /// Probability that the change of heading is at least 90° to either side at that time; likewise.
+    pub p_quarter_turn: Option<f64>,
+    /// Probability that the change of heading is at least 180° to either side at that time; likewise.
+    pub p_half_turn: Option<f64>,
     /// How much of this is chance, because forces, vehicles and motions are drawn a limited number of
     /// times; none of a single motion.
     pub monte_carlo: Option<MonteCarloError>,

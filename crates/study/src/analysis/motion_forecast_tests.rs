@@ -113,7 +113,7 @@ fn a_car_that_spins_in_few_motions_does_so_as_often_as_in_many_more() {
         (end_rad - struck.initial.yaw_rad).abs() >= FRAC_PI_2
     };
     let expected = many.iter().filter(has_turned).count() as f64 / 2000.0;
-    let share = answer.report.report.outcome.p_quarter_turn;
+    let share = answer.forecast.outcome.p_quarter_turn.unwrap();
     let error = (expected * (1.0 - expected) * (1.0 / 240.0 + 1.0 / 2000.0)).sqrt();
     assert!(share > 0.0 && expected > 0.01, "{share} {expected}");
     assert!((share - expected).abs() < 4.0 * error, "{share} {expected}");

@@ -182,8 +182,8 @@ fn outcome(
         is_at_rest,
         x_m: rest.x_m.clone(),
         y_m: rest.y_m.clone(),
-        p_quarter_turn: share_of(is_quarter_turn),
-        p_half_turn: share_of(is_half_turn),
+        p_quarter_turn: Some(share_of(is_quarter_turn)),
+        p_half_turn: Some(share_of(is_half_turn)),
         heading_change_rad: Estimate::from_draws(turned),
         speed_m_s: mean(|end| end.speed_m_s),
         yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s),
@@ -278,7 +278,7 @@ mod tests {
         let draws: Vec<SettledMotion> = (0..100).map(draw).collect();
         let outcome = SettledDraws::new(draws, [1, 1], 6, 0.05, 0.0).unwrap().outcome;
         assert_eq!((outcome.is_at_rest, outcome.time_s), (false, 5.0 * STEP_S));
-        assert!((outcome.p_quarter_turn - 0.2).abs() < 1e-12, "{outcome:?}");
+        assert!((outcome.p_quarter_turn.unwrap() - 0.2).abs() < 1e-12, "{outcome:?}");
         assert!((outcome.speed_m_s - 1.6).abs() < 1e-12, "{outcome:?}");
         assert!(outcome.x_m.ninety()[1] > 9.9, "{outcome:?}");
     }

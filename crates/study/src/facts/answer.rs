@@ -26,8 +26,8 @@ impl PredictMotionReport {
     /// The answer in one table.
     pub fn answer_table(&self) -> FactTable {
         let mut facts = vec![
-            Fact::new(Term::QuarterTurn, self.chance(self.outcome.p_quarter_turn)),
-            Fact::new(Term::HalfTurn, self.chance(self.outcome.p_half_turn)),
+            Fact::new(Term::QuarterTurn, self.turn_chance(self.outcome.p_quarter_turn)),
+            Fact::new(Term::HalfTurn, self.turn_chance(self.outcome.p_half_turn)),
         ];
         facts.extend(self.end_facts());
         facts.extend(self.place_facts());
@@ -47,6 +47,11 @@ impl PredictMotionReport {
         let in_card = [Term::EndsVerdict, Term::ImpulsesVerdict, Term::HingesOn].map(Value::Term);
         let facts = table.facts.into_iter().filter(|fact| !in_card.contains(&fact.name)).collect();
         FactTable { facts, ..table }
+    }
+
+    /// Probability of a turn, which has none after a second contact.
+    fn turn_chance(&self, chance: Option<f64>) -> Value {
+        chance.map_or(Term::AfterSecondContact.into(), |chance| self.chance(chance))
     }
 
     /// Where it stops, or where it is and how fast.

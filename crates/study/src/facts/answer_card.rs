@@ -32,7 +32,8 @@ impl PredictMotionReport {
 
     fn spin_sentence(&self) -> Value {
         let part = |term: Term, share| words(vec![term.into(), self.chance(share)]);
-        let [quarter, half] = [self.outcome.p_quarter_turn, self.outcome.p_half_turn];
+        let turns = self.outcome.p_quarter_turn.zip(self.outcome.p_half_turn);
+        let Some((quarter, half)) = turns else { return Term::AfterSecondContact.into() };
         let parts = vec![part(Term::TurnedQuarter, quarter), part(Term::TurnedHalf, half)];
         Value::Joined(parts, ", ")
     }
@@ -164,7 +165,7 @@ mod tests {
                 "What would change it?"
             ]
         );
-        let quarter = format!("{:.1} %", 100.0 * report.outcome.p_quarter_turn);
+        let quarter = format!("{:.1} %", 100.0 * report.outcome.p_quarter_turn.unwrap());
         assert!(rows[0][1].contains(&quarter), "{rows:?}");
         assert!(rows[1][1].starts_with("not within the forecast") && rows[1][1].contains("km/h"));
         assert!(rows[2][1].contains("site"), "{rows:?}");
@@ -172,6 +173,18 @@ mod tests {
         for [question, answer] in sentences(&report, Language::De) {
             assert!(question.ends_with('?') && answer.len() > 10, "{question} {answer}");
         }
+    }
+
+    /// “turned by 90° or more at the end with 90.4 % ± 3.1 %” was told of a car after a second contact, which is not
+    /// computed.
+    #[test]
+    fn after_a_second_contact_no_turn_has_a_probability() {
+        let mut report = forecast(None);
+        (report.outcome.p_quarter_turn, report.outcome.p_half_turn) = (None, None);
+        let spin = &sentences(&report, Language::En)[0][1];
+        assert!(spin.starts_with("without a probability, since a second contact"), "{spin}");
+        let table = report.answer_table().to_text(&FactWriter::english(UnitSystem::Si));
+        assert!(table.rows[..2].iter().all(|row| row.cells[1] == *spin), "{:?}", table.rows);
     }
 
     /// “yaw inertia, 0.0 % of the variance of the place, 87.3 % of that of the heading” was told of five draws.

@@ -104,16 +104,23 @@ impl PredictMotionReport {
         self.outcome.time_s <= self.known_until_s()
     }
 
-    /// Takes from the end of the motion what has no probability after a second contact: intervals and
-    /// regions, so that no reader of the answer finds them.
+    /// Takes from the end of the motion what has no probability after a second contact: intervals, regions and
+    /// how likely it has turned, so that no reader of the answer finds them.
     pub(crate) fn without_probabilities_after_contact(mut self) -> Self {
         if !self.is_end_known() {
             let outcome = &self.outcome;
             let [x_m, y_m, heading_change_rad] =
                 [&outcome.x_m, &outcome.y_m, &outcome.heading_change_rad]
                     .map(Estimate::without_intervals);
-            let (region_90_m2, outcome) = (None, self.outcome);
-            self.outcome = MotionOutcome { x_m, y_m, heading_change_rad, region_90_m2, ..outcome };
+            self.outcome = MotionOutcome {
+                x_m,
+                y_m,
+                heading_change_rad,
+                region_90_m2: None,
+                p_quarter_turn: None,
+                p_half_turn: None,
+                ..self.outcome
+            };
             self.rest = self.rest.as_ref().map(RestOutcome::after_contact);
         }
         self

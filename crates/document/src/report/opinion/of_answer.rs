@@ -41,7 +41,10 @@ pub(in crate::report) fn opinion_of_forecast(
     let table = report.answer_table();
     let cell = |term| value_of(&table, term, context).unwrap_or_default();
     let turns = [("quarter", &*cell(Term::QuarterTurn)), ("half", &*cell(Term::HalfTurn))];
-    let mut sentences = vec![fill(words.turns, &turns)];
+    let mut sentences = match report.is_end_known() {
+        true => vec![fill(words.turns, &turns)],
+        false => Vec::new(),
+    };
     let format = &**context.wording;
     let time = format.rounded(Quantity::Time, report.outcome.time_s);
     match &report.rest {
