@@ -1,13 +1,12 @@
 //! The facts of the simulation of one vehicle.
 
-use impactlab_core::units::{Estimate, Quantity};
+use impactlab_core::units::Quantity;
 use impactlab_core::vehicle::{Integrator, RoadSlope};
 
 use crate::analysis::{MonteCarloError, RestOutcome, Sensitivity};
 use crate::facts::both_vehicles::phase_table;
 use crate::facts::table::PREDICTED;
 use crate::facts::{Fact, FactTable, Term, Value};
-use crate::questions::simulate::flag::is_no_rare_contact;
 use crate::{
     ForceReport, FrictionZoneReport, ImpulseRival, RestState, SimulateReport, SkidReport,
     TireMarkReport, VehicleUncertainty, word,
@@ -186,21 +185,14 @@ impl VehicleUncertainty {
         if self.n_failed > 0 {
             facts.push(Fact::new(Term::LeftOut, Value::Count(self.n_failed)));
         }
-        let is_known =
-            !self.second_contact_probability.is_some_and(|p| is_no_rare_contact(Some(p)));
-        let position = |term, quantity, found: &Estimate| match is_known {
-            true => estimate(term, quantity, found),
-            false => estimate(term, quantity, &found.without_intervals()),
-        };
         facts.extend([
-            position(Term::EndX, Quantity::Length, &self.x_m),
-            position(Term::EndY, Quantity::Length, &self.y_m),
-            position(Term::FinalHeading, Quantity::Angle, &self.yaw_rad),
+            estimate(Term::EndX, Quantity::Length, &self.x_m),
+            estimate(Term::EndY, Quantity::Length, &self.y_m),
+            estimate(Term::FinalHeading, Quantity::Angle, &self.yaw_rad),
             estimate(Term::FinalSpeed, Quantity::Speed, &self.speed_m_s),
         ]);
-        facts.extend(self.rest.iter().flat_map(|rest| rest.facts(is_known)));
-        let error = self.monte_carlo.iter().filter(|_| is_known);
-        facts.extend(error.flat_map(MonteCarloError::facts));
+        facts.extend(self.rest.iter().flat_map(|rest| rest.facts(true)));
+        facts.extend(self.monte_carlo.iter().flat_map(MonteCarloError::facts));
         let n = self.n_draws.saturating_sub(self.n_failed);
         let chance = |chance| Value::chance_of_draws(chance, n);
         let second = self.second_contact_probability.map(chance);

@@ -12,6 +12,7 @@ use impactlab_core::vehicle::{
 
 use crate::EndState;
 use crate::analysis::{Analysis, AnalysisError, MonteCarloError, MotionEnd, RestOutcome, Settings};
+use crate::questions::simulate::flag::is_no_rare_contact;
 use crate::questions::simulate::report::motion_end;
 
 /// Where and how the motion ends over vehicles that are drawn from the estimates of a data sheet, SI
@@ -31,7 +32,7 @@ pub struct VehicleUncertainty {
     /// Speed of the CG at the end, m/s.
     pub speed_m_s: Estimate,
     /// Where, when and after what distance the vehicle comes to rest; none unless the question asks for
-    /// it.
+    /// it. After a second contact, which is not computed, this and what stands above has no intervals.
     pub rest: Option<RestOutcome>,
     /// Share of the draws in which the two vehicles meet again; none where one vehicle moves.
     pub second_contact_probability: Option<f64>,
@@ -108,7 +109,7 @@ pub(crate) fn vehicle_uncertainty(
     sensitivity.retain(is_estimated);
     let n_met = drawn.iter().flatten().filter(|drawn| drawn.has_met).count();
     let share_met = n_met as f64 / (ends.len() - n_failed) as f64;
-    Some(VehicleUncertainty {
+    let uncertainty = VehicleUncertainty {
         n_draws: ends.len(),
         n_failed,
         x_m: spread(|end| end.x_m),
@@ -120,7 +121,22 @@ pub(crate) fn vehicle_uncertainty(
             .then_some(share_met),
         sensitivity,
         monte_carlo: MonteCarloError::from_ends(&motion_ends, settings.duration_s),
+    };
+    let met = uncertainty.second_contact_probability;
+    Some(match met.is_some_and(|share| is_no_rare_contact(Some(share))) {
+        true => uncertainty.after_contact(),
+        false => uncertainty,
     })
+}
+
+impl VehicleUncertainty {
+    /// The same without what no longer holds after a second contact, which is not computed: intervals and regions.
+    fn after_contact(self) -> Self {
+        let [x_m, y_m, yaw_rad, speed_m_s] =
+            [&self.x_m, &self.y_m, &self.yaw_rad, &self.speed_m_s].map(Estimate::without_intervals);
+        let rest = self.rest.as_ref().map(RestOutcome::after_contact);
+        Self { x_m, y_m, yaw_rad, speed_m_s, rest, monte_carlo: None, ..self }
+    }
 }
 
 #[cfg(test)]
@@ -183,6 +199,33 @@ mod tests {
         let estimated = [CaveatSubject::VehicleParameter, CaveatSubject::RoadFriction].map(Some);
         let is_estimate = |caveat: &&Caveat| estimated.contains(&caveat.subject);
         assert_eq!(report.caveats.iter().filter(is_estimate).count(), shares.len());
+    }
+
+    /// The text had no intervals after a second contact, those of the speed excepted, and the answer had all of them.
+    #[test]
+    fn after_a_second_contact_no_end_has_an_interval() {
+        let ended = |duration_s| {
+            let request = SimulateRequest {
+                vehicle: VehicleChoice::named("toyota-camry-2018"),
+                vehicle_draws: Some(20),
+                one_contact: true,
+                duration_s,
+                ..SimulateRequest::new(pit())
+            };
+            let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+            let answer = request.answer(&Library::default(), &mut go_on).unwrap();
+            answer.complete().unwrap().report.report.uncertainty.unwrap()
+        };
+        // The vehicles meet again after 0.19 s.
+        for (duration_s, is_met) in [(0.12, false), (2.0, true)] {
+            let found = ended(duration_s);
+            let share = found.second_contact_probability.unwrap();
+            assert_eq!(share > 0.9, is_met, "{found:?}");
+            for estimate in [&found.x_m, &found.y_m, &found.yaw_rad, &found.speed_m_s] {
+                assert_eq!(estimate.intervals.is_empty(), is_met, "{duration_s} s: {found:?}");
+            }
+            assert_eq!(found.monte_carlo.is_none(), is_met, "{duration_s} s: {found:?}");
+        }
     }
 
     /// The standard deviation was read and did nothing where the vehicle has no data sheet.
