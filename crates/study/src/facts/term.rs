@@ -626,8 +626,8 @@ terms! {
     ClusterCentre: "centre", "Mitte", "Impulse at the centre of the cluster";
     HistoryOfGaussianProcesses: "history, Gaussian processes", "Verlauf, Gauß-Prozesse",
         "Error of the strongest baseline";
-    ResponseEvaluation: "Response models on trajectories that none has seen",
-        "Bewegungsmodelle mit Bewegungen, die keines kennt";
+    ResponseEvaluation: "Response models on recorded trajectories",
+        "Bewegungsmodelle an aufgezeichneten Bewegungen";
     UnseenMotions: "trajectories", "Bewegungen";
     Choices: "choices of those to learn from", "Auswahlen der Bewegungen zum Lernen";
     // Methods by hand.
