@@ -313,9 +313,18 @@ pub(crate) fn predicted_motion_caveats(
     };
     let beyond = duration_caveat(report);
     let few = few_draws(independent_draws(report), end.monte_carlo.as_ref());
+    let n_failed = report.contacts.as_ref().map_or(0, |contacts| contacts.n_failed);
+    let left_out = left_out_caveat(n_failed, "draws of the forecast");
     let outside = predicted.iter().cloned().chain(domain).chain(beyond);
     let apart = report.rival.as_ref().and_then(disagreement_caveat);
-    outside.chain(contact).chain(flags).chain(moving).chain(few).chain(apart).collect()
+    outside
+        .chain(contact)
+        .chain(flags)
+        .chain(moving)
+        .chain(left_out)
+        .chain(few)
+        .chain(apart)
+        .collect()
 }
 
 /// A predicted impulse that no contact brings about.

@@ -260,10 +260,12 @@ impl PredictMotionReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::caveats::restrictions::predicted_motion_caveats;
     use crate::facts::FactWriter;
     use crate::facts::answer::tests::forecast;
     use crate::{ForceReport, RecordedImpulse, TriedMotion};
     use impactlab_core::numerics::share_standard_error;
+    use impactlab_core::uncertainty::CaveatKind;
     use impactlab_core::units::UnitSystem;
 
     /// Of a car of 400 kg, of which the network has half a say, it was told that intervals had held in 45 of 48
@@ -314,6 +316,22 @@ mod tests {
         let is_told = |report: &PredictMotionReport| report.held_table().is_some();
         assert!(predicted.force_model.is_some());
         assert_eq!([&by_record, &by_pulse, &predicted].map(is_told), [true, false, false]);
+    }
+
+    /// Draws that could not be followed stood in a table of details alone, and the others told of all.
+    #[test]
+    fn draws_that_could_not_be_followed_restrict_the_answer() {
+        let mut report = forecast(None);
+        let left_out = |report: &PredictMotionReport| {
+            let caveats = predicted_motion_caveats(report, &[]).into_iter();
+            caveats
+                .filter(|it| it.kind == CaveatKind::LeftOut)
+                .map(|it| it.text)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(left_out(&report), [""; 0]);
+        report.contacts.as_mut().unwrap().n_failed = 3;
+        assert_eq!(left_out(&report), ["3 draws of the forecast could not be used"]);
     }
 
     #[test]
