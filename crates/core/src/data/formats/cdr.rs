@@ -425,13 +425,12 @@ fn is_no_data(cells: &[String]) -> bool {
 pub(crate) fn column_name(name: &str) -> String {
     let name = name.replace(['\t', '"'], " ");
     let name = name.trim();
-    let (bare, symbol) = match name.rsplit_once('(') {
-        Some((bare, rest)) => {
-            let symbol = rest.split(['[', ')', ',']).next().unwrap_or_default();
-            (bare.trim(), symbol.trim())
-        }
-        None => (name, ""),
+    let in_parentheses = || {
+        let (bare, rest) = name.rsplit_once('(')?;
+        let symbol = rest.split(['[', ')', ',']).next().unwrap_or_default();
+        Some((bare.trim(), symbol.trim()))
     };
+    let (bare, symbol) = two_units(name).or_else(in_parentheses).unwrap_or((name, ""));
     let key = letters_and_digits(bare);
     let has = |word: &str| key.contains(word);
     let is = |quantity| unit(quantity, symbol).is_some();
@@ -443,6 +442,15 @@ pub(crate) fn column_name(name: &str) -> String {
         () if symbol.is_empty() => bare.to_owned(),
         () => format!("{bare} [{symbol}]"),
     }
+}
+
+/// The name and the first of two units that have no parentheses around them: `Speed vehicle indicated MPH [km/h]`.
+fn two_units(name: &str) -> Option<(&str, &str)> {
+    let (first, second) = name.strip_suffix(']')?.rsplit_once('[')?;
+    let first = first.trim_end();
+    let (bare, symbol) = first.rsplit_once([' ', ',']).unwrap_or(("", first));
+    let are_of = |of: &Quantity| unit(*of, symbol).is_some() && unit(*of, second).is_some();
+    Quantity::ALL.iter().any(are_of).then_some((bare.trim_end(), symbol.trim_matches(['(', ')'])))
 }
 
 /// The one of comma, semicolon and tab by which most cells are numbers, with either decimal sign; of those by which as

@@ -37,3 +37,23 @@ fn keys_have_their_numbers() {
     );
     assert_eq!(report.value("edrdevicetype"), Some("Module 7"));
 }
+
+/// Ford has its units without parentheses; 31 mph was read as 31 km/h.
+#[test]
+fn the_first_of_two_units_is_that_of_the_numbers() {
+    for (name, expected) in [
+        ("Speed vehicle indicated MPH [km/h]", "speed [MPH]"),
+        ("Speed, Vehicle Indicated (MPH [km/h])", "speed [MPH]"),
+        ("Maximum delta-V, longitudinal, MPH [km/h]", "Maximum delta-V, longitudinal, [MPH]"),
+        ("Speed (MPH) [km/h]", "speed [MPH]"),
+        ("km/h [MPH]", " [km/h]"),
+        ("Speed [km/h]", "Speed [km/h]"),
+        ("Delta V [km/h]", "Delta V [km/h]"),
+    ] {
+        assert_eq!(column_name(name), expected, "{name}");
+    }
+    let text = REPORT
+        .replace("Speed, Vehicle Indicated (MPH [km/h])", "Speed vehicle indicated MPH [km/h]");
+    let table = as_table(Path::new("r.csv"), &text, &ReadSettings::default()).unwrap().unwrap();
+    assert!(table.text.contains("time [sec]\tspeed [MPH]\tsteering wheel [deg]"), "{}", table.text);
+}
