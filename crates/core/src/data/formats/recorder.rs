@@ -417,15 +417,24 @@ fn no_event(path: &Path, number: usize, found: Vec<String>) -> DataError {
     DataError::NoSheet { path: path.to_owned(), wanted: format!("event {number}"), found }
 }
 
-/// The event in parentheses in the name of a section, without the number of one of its tables.
+/// The event in parentheses in the name of a section. How often it was sampled, the number of a table and, of a numbered
+/// event, its kind may stand beside it and are no part of its name.
 fn event_of(title: &str) -> Option<String> {
     let groups = title.split('(').skip(1).filter_map(|rest| rest.split(')').next());
     let mut names = groups.filter(|name| {
         let lower = name.to_lowercase();
         ["event", "record", "deployment"].iter().any(|word| lower.contains(word))
     });
-    let name = names.next()?;
-    Some(name.split(" TABLE ").next()?.trim().to_owned())
+    let name = names.next()?.trim();
+    let sampled = name.strip_prefix('[').and_then(|rest| rest.split_once(']'));
+    let name = sampled.map_or(name, |(_, name)| name);
+    let lower = name.to_ascii_lowercase();
+    let end = lower.find(" table ").unwrap_or(name.len());
+    let is_numbered = lower.get(..end)?.contains(|c: char| c.is_ascii_digit());
+    let kinds = [" - deployment", " - non-deployment"];
+    let kind = kinds.iter().find_map(|kind| lower.find(kind)).filter(|_| is_numbered);
+    let name = name.get(..kind.unwrap_or(end).min(end))?;
+    Some(name.trim().trim_end_matches([' ', '-']).to_owned())
 }
 
 #[cfg(test)]

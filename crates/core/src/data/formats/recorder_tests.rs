@@ -137,10 +137,27 @@ fn events_are_told_apart_and_their_tables_belong_together() {
         ("PRE-CRASH DATA (EVENT RECORD 1 TABLE 2 OF 2)", Some("EVENT RECORD 1")),
         ("PRE-CRASH DATA (MOST RECENT EVENT) (TABLE 1 OF 2)", Some("MOST RECENT EVENT")),
         ("DELTA-V LONGITUDINAL (NON-DEPLOYMENT)", Some("NON-DEPLOYMENT")),
+        ("PRE-CRASH DATA (EVENT RECORD 1 - TABLE 2 OF 2)", Some("EVENT RECORD 1")),
+        ("PRE-CRASH DATA (EVENT RECORD 1 - NON-DEPLOYMENT)", Some("EVENT RECORD 1")),
+        ("PRE-CRASH DATA (EVENT RECORD 1 - DEPLOYMENT - TABLE 1 OF 2)", Some("EVENT RECORD 1")),
+        ("PRE-CRASH DATA ([2 SAMPLES/SEC] MOST RECENT EVENT)", Some("MOST RECENT EVENT")),
+        ("PRE-CRASH DATA (Most Recent Event - table 1 of 2)", Some("Most Recent Event")),
+        (
+            "DELTA-V LATERAL (MOST RECENT EVENT - DEPLOYMENT)",
+            Some("MOST RECENT EVENT - DEPLOYMENT"),
+        ),
         ("PRE-CRASH DATA -5 TO 0 SEC (2 SAMPLES/SEC)", None),
     ] {
         assert_eq!(event_of(title).as_deref(), event, "{title}");
     }
+    // Event 2 was the second half of the tables of event 1.
+    let divided = REPORT.replace(
+        "\"DELTA-V, LONGITUDINAL (EVENT RECORD 1)\"",
+        "\"DELTA-V, LONGITUDINAL (EVENT RECORD 1 - TABLE 1 OF 1)\"",
+    );
+    let [first, second] = [None, Some(2)].map(|event| read(&divided, event).unwrap());
+    assert!(first.delta_v_ahead.is_some() && first.events.len() == 2, "{first:?}");
+    assert_eq!((second.event.as_str(), second.delta_v_ahead), ("EVENT RECORD 2", None));
     // Δv of a table without an event is that of none of two events.
     let other =
         REPORT.replace("\"DELTA-V, LONGITUDINAL (EVENT RECORD 1)\"", "\"DELTA-V, LONGITUDINAL\"");
