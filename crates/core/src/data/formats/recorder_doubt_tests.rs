@@ -69,6 +69,22 @@ fn a_change_of_velocity_that_goes_back_is_said() {
     assert!(is_said("-0.5") && !is_said("-19"));
 }
 
+/// The change in each 10 ms of a crash with a change of 25 km/h in all: it was read as one of 0 km/h without a word.
+#[test]
+fn a_column_of_changes_from_sample_to_sample_is_said() {
+    let steps = [0, -2, -4, -5, -6, -4, -3, -1, 0, 0];
+    let rows = |value: &dyn Fn(usize) -> i32| -> String {
+        (0..steps.len()).map(|row| format!("{},{}\n", 10 * row, value(row))).collect()
+    };
+    let is_said = |rows: &str| {
+        let text = format!("Time [ms],Delta-V Longitudinal [km/h]\n{rows}");
+        let record = read(&text, None).unwrap();
+        record.doubts.iter().any(|doubt| doubt.contains("add them up"))
+    };
+    assert!(is_said(&rows(&|row| steps[row])));
+    assert!(!is_said(&rows(&|row| steps[..=row].iter().sum())));
+}
+
 /// Zeros after the end of a record, and the 127 km/h that stand for no value.
 #[test]
 fn rows_that_fill_up_a_record_are_no_change_of_velocity() {

@@ -22,8 +22,10 @@ const FILLED_UP_M_S: f64 = 2.0;
 /// Largest change of velocity that a record begins with when the recorder wakes up, m/s.
 const FIRST_M_S: f64 = 2.0;
 
-/// How much of its largest value a record of one impact holds at its end.
+/// How much of its largest value a record of one impact holds at its end, and from which largest value on that tells,
+/// m/s: the changes from one sample to the next are smaller than the whole change.
 const HELD_SHARE: f64 = 0.5;
+const TELLING_M_S: f64 = 0.8;
 
 /// Rate at which a car that drives on its tires changes its speed at most, m/s²: that of dry friction and some.
 const TIRES_M_S2: f64 = 12.0;
@@ -330,13 +332,15 @@ pub(super) fn largest_of(pairs: &[(f64, f64)]) -> Option<(f64, f64)> {
     pairs.iter().copied().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
 }
 
-/// That most of a change of velocity is gone at the end of its record, as after a second impact.
+/// That most of a change of velocity is gone at the end of its record, as after a second impact, or where the rows are
+/// the changes from one sample to the next.
 fn falls_back(pairs: &[(f64, f64)], name: &str) -> Option<String> {
     let ((at_s, largest), (end_s, last)) = (largest_of(pairs)?, *pairs.last()?);
-    (largest.abs() > FILLED_UP_M_S && last.abs() < HELD_SHARE * largest.abs()).then(|| {
+    (largest.abs() > TELLING_M_S && last.abs() < HELD_SHARE * largest.abs()).then(|| {
         format!(
             "the change of velocity {name} is {largest:.2} m/s at {at_s} s and {last:.2} m/s at its end, {end_s} s, \
-             which is read: if it is of more than one impact, cut the record off after the first"
+             which is read: if it is of more than one impact, cut the record off after the first; if its rows are the changes \
+             from one sample to the next, add them up"
         )
     })
 }
