@@ -26,7 +26,7 @@ use crate::data::spelling::{is_delta_v, letters_and_digits, trailing_unit};
 use crate::data::text::read_text;
 use crate::data::{DataError, ReadSettings, Table};
 use crate::ranges::SPEED;
-use crate::units::Quantity;
+use crate::units::{KILOMETRE_PER_HOUR_M_S, MILE_PER_HOUR_M_S, Quantity};
 
 /// Time at the end of a record of the change of velocity over which it no longer changes if the record is
 /// complete, s.
@@ -41,6 +41,9 @@ pub(super) const LONGEST_S: f64 = 2.0;
 /// By how much the largest change of velocity of a report may be beyond the end of its record.
 const LARGER_SHARE: f64 = 1.2;
 const LARGER_M_S: f64 = 0.5;
+
+/// Change of velocity up to which 49 CFR 563 and UN R160 ask a recorder to count, 100 km/h, less half of 1 mph, m/s.
+const RANGE_END_M_S: f64 = 100.0 * KILOMETRE_PER_HOUR_M_S - 0.5 * MILE_PER_HOUR_M_S;
 
 /// What a recorder has kept of one event.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -158,7 +161,7 @@ impl RecorderRecord {
             Ok(_) | Err(DataError::NotText { .. } | DataError::OtherFormat { .. }) => None,
             Err(error) => return Err(error),
         };
-        let record = match is_cdr {
+        let mut record = match is_cdr {
             Some(report) => Self::from_report(path, &report, event)?,
             None => match event {
                 None | Some(1) => {
@@ -170,6 +173,8 @@ impl RecorderRecord {
         if record.is_empty() {
             return Err(DataError::NoRecord { path: path.to_owned(), doubts: record.doubts });
         }
+        let changes = [(record.delta_v_ahead, "ahead"), (record.delta_v_right, "to the right")];
+        record.doubts.extend(changes.into_iter().filter_map(beyond_range));
         Ok(record)
     }
 
@@ -411,6 +416,19 @@ impl RecorderRecord {
             }
         }
     }
+}
+
+/// That a change of velocity is where recorders stop counting, or have a number that stands for none.
+fn beyond_range((delta_v, name): (Option<RecordedDeltaV>, &str)) -> Option<String> {
+    let size_m_s = delta_v?.delta_v_m_s.abs();
+    (size_m_s >= RANGE_END_M_S).then(|| {
+        format!(
+            "the change of velocity {name} is {:.0} km/h ({:.0} mph): recorders need not count beyond 100 km/h, so that it \
+             may have been larger, and 126 and 127 stand for no value in some",
+            size_m_s / KILOMETRE_PER_HOUR_M_S,
+            size_m_s / MILE_PER_HOUR_M_S
+        )
+    })
 }
 
 fn no_event(path: &Path, number: usize, found: Vec<String>) -> DataError {

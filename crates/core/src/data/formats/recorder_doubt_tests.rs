@@ -114,6 +114,27 @@ fn a_largest_change_of_velocity_beyond_the_record_is_said() {
     assert!(!is_said("-20 [-32]"));
 }
 
+/// A change of velocity that stays at the end of the range, and the 127 km/h of a status that stand for no value.
+#[test]
+fn a_change_of_velocity_at_the_end_of_the_range_is_said() {
+    let is_said = |text: &str| {
+        let record = read(text, None).unwrap();
+        assert!(record.delta_v_ahead.is_some() || record.delta_v_right.is_some(), "{record:?}");
+        record.doubts.iter().any(|doubt| doubt.contains("may have been larger"))
+    };
+    let rows = |end: i32| {
+        format!("Time [ms],Delta-V Longitudinal [km/h]\n0,0\n60,-60\n110,{end}\n150,{end}\n")
+    };
+    assert!(is_said(&rows(-100)) && !is_said(&rows(-98)));
+    let status = |largest: &str| {
+        format!(
+            "CDR FILE INFORMATION\nSYSTEM STATUS AT EVENT (EVENT RECORD 1)\n\
+             \"Maximum Delta-V, Lateral (MPH [km/h])\",{largest}\n"
+        )
+    };
+    assert!(is_said(&status("79 [127]")) && !is_said(&status("5 [8]")));
+}
+
 /// Wheels that lock, and the 255 km/h that stand for no value: neither is the speed of the car.
 #[test]
 fn a_speed_that_tires_cannot_reach_is_not_taken() {
