@@ -7,7 +7,10 @@
 //! a is the place of the antenna from the CG in body axes, ψ the yaw angle of the file. Where a receiver gives
 //! the course over ground instead, a sideslip β of the car leaves an error of some |a| β.
 
-use crate::data::{Channel, Note, TimeSeries};
+use std::collections::BTreeMap;
+
+use crate::data::computed::{POSE_X, key};
+use crate::data::{Channel, ColumnUse, Formula, Note, ReadSettings, TimeSeries};
 use crate::ranges::{CONTACT_X, CONTACT_Y};
 
 /// The place in `0.4 -0.3` or `0.4,-0.3`: ahead and to the left of the CG, m.
@@ -38,6 +41,26 @@ pub(super) fn note([ahead_m, left_m]: [f64; 2]) -> Note {
          angle, a sideslip of the car is not taken out"
     );
     Note::Format { text }
+}
+
+/// Says that positions are those of an antenna or of the frame of a ROS message, whose place on the car nobody has said.
+pub(super) fn open_note(
+    columns: &BTreeMap<Channel, ColumnUse>,
+    settings: &ReadSettings,
+) -> Option<Note> {
+    let x = columns.get(&Channel::X).filter(|_| settings.antenna_m.is_none())?;
+    let whose = match x.formula {
+        Some(Formula::East) => "the antenna",
+        None if key(&x.name).ends_with(POSE_X) => {
+            "the frame of the message (child_frame_id), on many cars the middle of the rear axle"
+        }
+        _ => return None,
+    };
+    let text = format!(
+        "positions are those of {whose}: where it is not at the centre of gravity, the path and a turn of the car mix; say \
+         where it is (antenna=x,y from the CG)"
+    );
+    Some(Note::Doubt { text })
 }
 
 #[cfg(test)]
@@ -73,6 +96,24 @@ mod tests {
         for wrong in ["antenna=1", "antenna=1,2,3", "antenna=99,0", "antenna=a b"] {
             assert!(wrong.parse::<ColumnMap>().is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn positions_of_a_receiver_and_of_a_message_are_said_to_be_theirs() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let is_said = |header: &str, map: &str| {
+            let text = format!("time [s],{header},yaw [rad]\n0,52,1,0\n1,52.0001,1,0\n");
+            std::fs::write(&path, text).unwrap();
+            let loaded = read_any_series(&path, Some(&map.parse().unwrap())).unwrap();
+            loaded.notes.iter().any(|note| note.to_string().contains("antenna=x,y from the CG"))
+        };
+        assert!(is_said("latitude,longitude", "headings=yaw"));
+        assert!(!is_said("latitude,longitude", "antenna=0.4,-0.3"));
+        let pose = "odom.pose.pose.position.x,odom.pose.pose.position.y";
+        let map = "x=odom.pose.pose.position.x:m,y=odom.pose.pose.position.y:m";
+        assert!(is_said(pose, map) && !is_said(pose, &format!("{map},antenna=-1.4,0")));
+        assert!(!is_said("x [m],y [m]", "headings=yaw"));
     }
 
     #[test]

@@ -35,10 +35,13 @@ const COURSES: [&str; 9] = [
     "kursübergrund",
 ];
 
+/// End of the header of the position of a ROS message along x.
+pub(super) const POSE_X: &str = "posepositionx";
+
 /// Ends of headers of a ROS message with a pose, in SI units (REP 103) unless they say others, with their
 /// channels; those of a twist are of `nav_msgs/Odometry`, whose twist is in the axes of the vehicle.
 const ROS_CHANNELS: [(&str, Channel); 5] = [
-    ("posepositionx", Channel::X),
+    (POSE_X, Channel::X),
     ("posepositiony", Channel::Y),
     ("twisttwistlinearx", Channel::Vx),
     ("twisttwistlineary", Channel::Vy),
@@ -103,7 +106,7 @@ fn course_note(columns: &BTreeMap<Channel, ColumnUse>) -> Option<Note> {
 }
 
 /// The letters of a header without its unit.
-fn key(name: &str) -> String {
+pub(super) fn key(name: &str) -> String {
     let name = name.split(['[', '(']).next().unwrap_or(name).trim();
     let lower = name.to_lowercase();
     let name = lower.strip_suffix("_deg").or(lower.strip_suffix(" deg")).unwrap_or(&lower);

@@ -353,6 +353,7 @@ fn load_columns(
     let begins_s = clock::offered_shift_s(&series).filter(|_| !is_shifted);
     notes.extend(begins_s.map(|shift_s| Note::Begins { first_s: 0.0 - shift_s }));
     notes.extend(computed::notes(table, &by_channel));
+    notes.extend(antenna::open_note(&by_channel, &settings));
     notes.extend(found);
     notes.extend(doubts::of_numbers(table, &by_channel, &series, map));
     // What is checked above is what the receiver has measured.

@@ -31,10 +31,6 @@ const SEPARATORS: [char; 4] = [',', ';', '\t', '|'];
 /// Tracks of a file.
 const MAX_TRACKS: usize = 1000;
 
-/// What is said of positions.
-const OF_ANTENNA: &str = "positions are those of the antenna: where it is not at the centre of gravity, the \
-     path and a turn of the car mix; say where it was mounted (antenna=x,y from the CG)";
-
 /// What is said of a yaw angle that is a course over ground.
 pub(in crate::data) const OF_COURSE: &str = "the yaw angle is the course over ground: of a car that slides or spins it is not the \
      heading";
@@ -95,9 +91,6 @@ pub(super) fn as_table(
         return Err(DataError::OtherFormat { path: path.to_owned(), format, remedy });
     }
     let mut doubts = track.doubts.clone();
-    if settings.antenna_m.is_none() {
-        doubts.push(OF_ANTENNA.to_owned());
-    }
     if track.header == RMC_HEADER {
         doubts.push(OF_COURSE.to_owned());
     }
