@@ -1,6 +1,7 @@
 //! Channels that are computed from several columns, found by the headers of these.
 
 use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::data::columns::{ColumnUse, Term, column_use, stated_unit};
 use crate::data::degree_text::{LATITUDE_LETTERS, LONGITUDE_LETTERS, place_deg};
@@ -8,7 +9,7 @@ use crate::data::error::quoted;
 use crate::data::formats::OF_COURSE;
 use crate::data::spelling::letters_and_digits;
 use crate::data::{Channel, DataError, Formula, Note, Table};
-use crate::units::Quantity;
+use crate::units::{Quantity, significant};
 
 /// Headers of latitude and longitude.
 const LATITUDE: [&str; 4] = ["latitude", "lat", "gpslat", "breitengrad"];
@@ -34,6 +35,9 @@ const COURSES: [&str; 9] = [
     "kurs",
     "kursübergrund",
 ];
+
+/// Latitude and longitude up to which a place is near that of both 0, where maps of simulators begin, degrees.
+const NEAR_ZERO_DEG: f64 = 0.1;
 
 /// End of the header of the position of a ROS message along x.
 pub(super) const POSE_X: &str = "posepositionx";
@@ -152,7 +156,25 @@ pub(super) fn notes(
     table: &Table,
     columns: &BTreeMap<Channel, ColumnUse>,
 ) -> impl Iterator<Item = Note> {
-    places_note(table, columns).into_iter().chain(course_note(columns))
+    let places = places_note(table, columns);
+    let at_sea = places.as_ref().and_then(at_sea);
+    places.into_iter().chain(at_sea).chain(course_note(columns))
+}
+
+/// That a place lies where radians lie that are read as degrees, and degrees that are read as minutes of arc: in the Gulf
+/// of Guinea, which has no land up to these limits.
+fn at_sea(places: &Note) -> Option<Note> {
+    let Note::Places { origin_deg: [latitude, longitude] } = places else { return None };
+    let is_there = latitude.abs() <= FRAC_PI_2 && longitude.abs() <= PI;
+    let is_near_zero = latitude.abs().max(longitude.abs()) < NEAR_ZERO_DEG;
+    (is_there && !is_near_zero).then(|| Note::Doubt {
+        text: format!(
+            "latitude {} and longitude {} deg lie in the Gulf of Guinea: are they in radians, or in degrees where the format \
+             has minutes of arc, as VBO does?",
+            significant(*latitude),
+            significant(*longitude)
+        ),
+    })
 }
 
 /// Says from where positions are counted that follow from latitude and longitude.
@@ -170,8 +192,8 @@ fn places_note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Option<
     Some(Note::Places { origin_deg: [latitude_deg, degrees(longitude, LONGITUDE_LETTERS)?] })
 }
 
-/// Refuses places whose latitude or longitude is no number of degrees to the north and to the east: one in another
-/// unit, or one that counts to the south or to the west by its header or by a letter in the next column.
+/// Refuses places without a fix, and those whose latitude or longitude is no number of degrees to the north and to the
+/// east: one in another unit, or one that counts to the south or to the west by its header or by a letter in the next column.
 ///
 /// # Errors
 /// [`DataError::Contradiction`].
@@ -182,6 +204,13 @@ pub(super) fn check_places(
     let is_place =
         |column: &&ColumnUse| matches!(column.formula, Some(Formula::East | Formula::North));
     let Some(place) = columns.values().find(is_place) else { return Ok(()) };
+    if let Some(row_idx) = row_without_fix(table, place) {
+        let what = format!(
+            "line {} has latitude 0 and longitude 0, as receivers write them without a fix: remove such rows",
+            table.line(row_idx)
+        );
+        return Err(DataError::Contradiction { path: table.path().to_owned(), what });
+    }
     let letter = |row_idx: usize, idx: usize| table.cell(row_idx, idx).trim().to_lowercase();
     let negative = [(["south", "s"], LATITUDE_LETTERS), (["west", "w"], LONGITUDE_LETTERS)];
     for (term, ([word, short], letters)) in place.terms.iter().zip(negative) {
@@ -207,6 +236,22 @@ pub(super) fn check_places(
         }
     }
     Ok(())
+}
+
+/// The first row at latitude and longitude 0, of a table with places elsewhere.
+fn row_without_fix(table: &Table, place: &ColumnUse) -> Option<usize> {
+    let &[latitude, longitude] = place.terms.as_slice() else { return None };
+    let columns = [(latitude, LATITUDE_LETTERS), (longitude, LONGITUDE_LETTERS)];
+    let size_deg = |row_idx: usize| {
+        let degrees = |(term, letters): (Term, _)| {
+            place_deg(table, row_idx, term.number.checked_sub(1)?, letters)
+        };
+        let [latitude, longitude] = columns.map(degrees);
+        Some(latitude?.abs().max(longitude?.abs()))
+    };
+    let rows = || (0..table.n_rows()).filter_map(|row_idx| Some((row_idx, size_deg(row_idx)?)));
+    let (row_idx, _) = rows().find(|(_, size_deg)| *size_deg == 0.0)?;
+    rows().any(|(_, size_deg)| size_deg > NEAR_ZERO_DEG).then_some(row_idx)
 }
 
 /// Whether a formula gives this channel.
@@ -277,5 +322,35 @@ mod tests {
             let error = read(header, side, "0.000").unwrap_err();
             assert!(error.contains("degrees to the east"), "{header}, {side}: {error}");
         }
+    }
+
+    /// The path of a log whose first rows had no fix was that of a car at sea, and shorter by a third.
+    #[test]
+    fn places_without_a_fix_are_refused_and_those_at_sea_said() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let read = |places: [[f64; 2]; 3]| {
+            let row = |(at, [latitude, longitude]): (usize, &[f64; 2])| {
+                format!("{at},{latitude},{longitude}\n")
+            };
+            let rows: String = places.iter().enumerate().map(row).collect();
+            std::fs::write(&path, format!("time [s],latitude,longitude\n{rows}")).unwrap();
+            read_any_series(&path, None).map_err(|error| error.to_string())
+        };
+        let is_at_sea = |places| {
+            let notes = read(places).unwrap().notes;
+            notes.iter().any(|note| note.to_string().contains("Gulf of Guinea"))
+        };
+        let error = read([[0.0, 0.0], [52.0, 13.0], [52.0001, 13.0]]).unwrap_err();
+        assert!(error.contains("line 2 has latitude 0"), "{error}");
+        assert!(is_at_sea([[0.9076, 0.2269], [0.9077, 0.2269], [0.9078, 0.2269]]));
+        assert!(!is_at_sea([[0.0, 0.0], [0.0001, 0.0], [0.0002, 0.0]]));
+        assert!(!is_at_sea([[0.3476, 32.5825], [0.3477, 32.5825], [0.3478, 32.5825]]));
+        let rows: String =
+            (0..4).map(|i| format!("10000{i}.00 51.985{i} 0.975 40.0 0.0\n")).collect();
+        let text = format!("[column names]\ntime lat long velocity heading\n\n[data]\n{rows}");
+        std::fs::write(&path, text).unwrap();
+        let notes = read_any_series(&path, None).unwrap().notes;
+        assert!(notes.iter().any(|note| note.to_string().contains("as VBO does")), "{notes:?}");
     }
 }
