@@ -233,13 +233,27 @@ pub(crate) fn trailing_unit(header: &str, quantity: Quantity) -> Result<Option<U
             continue;
         };
         if let Some(unit) = unit(quantity, text) {
-            return Ok(Some(unit));
+            return match with_factor(header, at) {
+                Some(text) => Err(text.to_owned()),
+                None => Ok(Some(unit)),
+            };
         }
         if is_bracketed(rest) && is_unit(text) {
             wrong = Some(text.to_owned());
         }
     }
     wrong.map_or(Ok(None), Err)
+}
+
+/// The text of brackets in which a number stands before the unit that begins at a place, such as `[1000 N]`: numbers are
+/// in a multiple of it. `None` for any other place.
+fn with_factor(header: &str, at: usize) -> Option<&str> {
+    let (before, rest) = header.split_at(at);
+    let open = before.rfind(OPENING)?;
+    let is_multiplied =
+        rest.starts_with([' ', '*', '·', '×']) && before.ends_with(char::is_numeric);
+    let is_inside = !before.get(open..)?.contains(CLOSING);
+    (is_multiplied && is_inside).then(|| unit_text(header.get(open..)?)).flatten()
 }
 
 /// Whether two headers are equal apart from case, blanks, punctuation and a unit in brackets.
@@ -419,6 +433,24 @@ mod tests {
         }
         for header in ["case", "v", "p_kpa", "wheel slip", "", "°", "x1", "x_std", "ratio [-]"] {
             assert_eq!(meaning(header), Meaning::Unknown, "{header}");
+        }
+    }
+
+    #[test]
+    fn a_multiple_of_a_unit_is_none_that_is_known() {
+        let kilonewton = unit(Quantity::Force, "kN");
+        for (header, expected) in [
+            ("Kraft längs [1000 N]", Err("1000 N")),
+            ("Load cell (10 kN)", Err("10 kN")),
+            ("Load cell [10^3 N]", Err("10^3 N")),
+            ("Load cell [kN]", Ok(kilonewton)),
+            ("Load cell (no. 2, kN)", Ok(kilonewton)),
+            ("Load cell (2) kN", Ok(kilonewton)),
+            ("Load cell 2 [kN]", Ok(kilonewton)),
+            ("Load cell 2", Ok(None)),
+        ] {
+            let expected = expected.map_err(str::to_owned);
+            assert_eq!(trailing_unit(header, Quantity::Force), expected, "{header}");
         }
     }
 
