@@ -193,7 +193,8 @@ fn places_note(table: &Table, columns: &BTreeMap<Channel, ColumnUse>) -> Option<
 }
 
 /// Refuses places without a fix, and those whose latitude or longitude is no number of degrees to the north and to the
-/// east: one in another unit, or one that counts to the south or to the west by its header or by a letter in the next column.
+/// east: one in another unit, or one that counts to the south or to the west by its header or by a letter in the next
+/// column.
 ///
 /// # Errors
 /// [`DataError::Contradiction`].

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::data::{
     Channel, ColumnMap, ColumnUse, GeographicPlace, Note, Table, TimeSeries, course, path_speed,
-    signals, steering,
+    placeholders, signals, steering,
 };
 use crate::numerics::line_length;
 use crate::units::significant;
@@ -35,7 +35,9 @@ pub(super) fn of_numbers(
         steering::note(by_channel, map, series),
         steering::opposed(by_channel, series),
     ];
-    all.into_iter().flatten().chain(signals::notes(by_channel, series)).collect()
+    let placeholders = placeholders::notes(table, by_channel, series);
+    let all = all.into_iter().flatten().chain(placeholders);
+    all.chain(signals::notes(by_channel, series)).collect()
 }
 
 /// That x and y without a unit are longitude and latitude, as maps write them: in metres the vehicle stands, and in degrees

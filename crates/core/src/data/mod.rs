@@ -50,6 +50,7 @@ mod no_samples;
 mod note;
 mod open;
 mod path_speed;
+mod placeholders;
 mod proposals;
 mod quality;
 mod quality_jumps;
