@@ -309,7 +309,16 @@ impl RecorderRecord {
         }
         // Modules with their times in a row have them among the status of the system, too.
         let has_controls = is_before_crash(section) || section.is_turned && !is_over_time(section);
+        let before = (self.delta_v_ahead, self.delta_v_right, self.doubts.len());
         self.add_table(&table, has_controls);
+        let after = (self.delta_v_ahead, self.delta_v_right, self.doubts.len());
+        if !has_controls && is_over_time(section) && after == before {
+            self.doubts.push(format!(
+                "nothing is read of the table {:?}: it has no change of velocity over time in columns that say so with their \
+                 unit",
+                section.title
+            ));
+        }
     }
 
     /// The table if its times stand in a row, as a section of a report.

@@ -135,6 +135,21 @@ fn a_change_of_velocity_at_the_end_of_the_range_is_said() {
     assert!(is_said(&status("79 [127]")) && !is_said(&status("5 [8]")));
 }
 
+/// Some modules call the column by its unit alone, and others record an acceleration.
+#[test]
+fn a_table_of_the_crash_of_which_nothing_is_read_is_said() {
+    let is_said = |column: &str| {
+        let column = format!("Time (msec),{column}\n");
+        let text = REPORT.replace("Time (msec),\"Delta-V, Longitudinal (MPH [km/h])\"\n", &column);
+        let record = read(&text, None).unwrap();
+        record.doubts.iter().any(|doubt| doubt.contains("nothing is read of the table"))
+    };
+    assert!(is_said("km/h") && is_said("Longitudinal Acceleration (g)"));
+    assert!(!is_said("\"Delta-V, Longitudinal (MPH [km/h])\""));
+    // What is wrong with a column is said of it.
+    assert!(!is_said("Longitudinal Delta-V"));
+}
+
 /// Wheels that lock, and the 255 km/h that stand for no value: neither is the speed of the car.
 #[test]
 fn a_speed_that_tires_cannot_reach_is_not_taken() {
