@@ -135,6 +135,20 @@ fn a_change_of_velocity_at_the_end_of_the_range_is_said() {
     assert!(is_said(&status("79 [127]")) && !is_said(&status("5 [8]")));
 }
 
+/// A driver who steers away from a crash turns the wheel further than that.
+#[test]
+fn a_steering_wheel_at_the_end_of_the_range_is_said() {
+    let is_said = |end: i32| {
+        let text = format!(
+            "Time [s],Speed [km/h],Steering Wheel Angle [deg]\n-1,40,0\n-0.5,38,-120\n0,36,{end}\n"
+        );
+        let record = read(&text, None).unwrap();
+        assert_eq!(record.before.steering_wheel_rad.len(), 3);
+        record.doubts.iter().any(|doubt| doubt.contains("turned further"))
+    };
+    assert!(is_said(-250) && !is_said(-245) && !is_said(-300));
+}
+
 /// Some modules call the column by its unit alone, and others record an acceleration.
 #[test]
 fn a_table_of_the_crash_of_which_nothing_is_read_is_said() {

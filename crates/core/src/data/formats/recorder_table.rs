@@ -45,6 +45,9 @@ const AT_LIMIT_M_S: f64 = 0.02;
 /// to 20 s.
 const COVERED_S: [f64; 2] = [0.1, 60.0];
 
+/// Angle of the steering wheel up to which 49 CFR 563 and UN R160 ask a recorder to count, rad: 250 deg.
+const STEERING_END_RAD: f64 = 250.0 * std::f64::consts::PI / 180.0;
+
 /// What is said of times before a crash that go back.
 const OTHER_EVENT: &str = "the times before the crash do not increase, and none is taken: a table has one event; put \
                            each event into a file of its own";
@@ -172,6 +175,7 @@ impl RecorderRecord {
         let yaw_rate = of(yaw_rate, ANGULAR_VELOCITY_SAMPLE, "yaw rate", doubts);
         let braked = table.switch(&rows, is_brake, "service brake", doubts);
         let anti_lock = table.switch(&rows, is_anti_lock, "anti-lock system", doubts);
+        doubts.extend(steering.as_deref().and_then(steered_to_the_end));
         self.sides.steering = steering_side.flatten();
         self.sides.yaw_rate = yaw_rate_side.flatten();
         self.before = RecordedControls {
@@ -356,6 +360,15 @@ fn beyond_tires(time_s: &[f64], speed_m_s: &[f64]) -> Option<String> {
         "the speed goes from {v0:.2} to {v1:.2} m/s between {t0} and {t1} s, which is more than tires can do: wheels \
          that were locked or spun, or a number that stands for none; no speed before the crash is taken"
     ))
+}
+
+/// That a steering wheel is at its largest angle where recorders may stop counting.
+fn steered_to_the_end(angles_rad: &[f64]) -> Option<String> {
+    let largest_rad = angles_rad.iter().fold(0.0, |of: f64, angle| of.max(angle.abs()));
+    ((largest_rad / STEERING_END_RAD - 1.0).abs() < 1e-6).then(|| {
+        "the steering wheel is turned to 250 deg, where recorders may stop counting: it may have been turned further"
+            .to_owned()
+    })
 }
 
 /// Why the last speed before a crash may be any higher one, in words: it is the limit of a recorder.
