@@ -146,20 +146,26 @@ impl Report {
 
     /// What the report says against itself.
     pub(crate) fn doubts(&self) -> Vec<String> {
-        let complete = self.value("completefilerecorded");
+        // Each event says it of itself.
+        let sections = self.sections.iter();
+        let complete: Vec<(&String, &str)> = sections
+            .filter_map(|section| Some((&section.title, section.value("completefilerecorded")?)))
+            .collect();
         let mut doubts = Vec::new();
-        match complete {
-            Some(value) if letters_and_digits(value).starts_with("yes") => {}
-            Some(value) => doubts.push(format!(
-                "the record is not complete (complete file recorded: {}): values may be those of another \
-                 event or be missing",
-                shortened(value)
-            )),
-            None => doubts.push(
+        if complete.is_empty() {
+            doubts.push(
                 "the report does not say whether the complete file was recorded; look it up in the PDF"
                     .to_owned(),
-            ),
+            );
         }
+        let is_yes = |value: &str| letters_and_digits(value).starts_with("yes");
+        doubts.extend(complete.iter().filter(|(_, value)| !is_yes(value)).map(|(title, value)| {
+            format!(
+                "the record is not complete (complete file recorded: {}, in {title:?}): values may be those of another \
+                 event or be missing",
+                shortened(value)
+            )
+        }));
         let empty = self.sections.iter().flat_map(|section| &section.rows);
         let empty = empty.filter(|(_, cells)| is_no_data(cells)).count();
         if empty > 0 {

@@ -27,6 +27,26 @@ fn the_table_before_the_crash_keeps_its_lines() {
     assert!(as_table(path, "t,fx\n0,1\n", &ReadSettings::default()).unwrap().is_none());
 }
 
+/// What the first event said was taken for all.
+#[test]
+fn each_event_says_whether_it_is_complete() {
+    let status = |event: u32, complete: &str| {
+        format!(
+            "SYSTEM STATUS AT EVENT (EVENT RECORD {event})\nComplete File Recorded,{complete}\n"
+        )
+    };
+    let doubts = |second: &str| {
+        let text = format!("CDR FILE INFORMATION\n{}{}", status(1, "Yes"), status(2, second));
+        Report::parse(Path::new("r.csv"), &text).unwrap().doubts()
+    };
+    assert!(doubts("Yes").is_empty());
+    let [doubt] = <[String; 1]>::try_from(doubts("No")).unwrap();
+    assert!(
+        doubt.contains("recorded: No, in \"SYSTEM STATUS AT EVENT (EVENT RECORD 2)\""),
+        "{doubt}"
+    );
+}
+
 #[test]
 fn keys_have_their_numbers() {
     let report = Report::parse(Path::new("r.csv"), REPORT).unwrap();
