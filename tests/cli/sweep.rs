@@ -159,6 +159,36 @@ fn a_broken_chunk_is_found_and_computed_anew() {
     assert!(said.contains("sweep: chunks are missing: 0;"), "{said}");
 }
 
+/// A chunk that could not be opened ended `status` with an error, and nothing was told of all the others.
+#[test]
+fn a_chunk_that_cannot_be_read_is_told_beside_all_others() {
+    let folder = TempDir::new().unwrap();
+    let plan = PIT.replace("n = 10", "n = 4").replace("chunk = 3", "chunk = 1");
+    let sweep = planned(&folder, &plan, "sweep");
+    ok(run(&["run", shown(&sweep), "--chunks", "0,2-3"]));
+    fs::create_dir(chunk_path(&sweep, 1)).unwrap();
+    let mut later = fs::read(chunk_path(&sweep, 2)).unwrap();
+    later.truncate(later.len() / 2);
+    fs::write(chunk_path(&sweep, 2), later).unwrap();
+    let output = run(&["status", shown(&sweep), "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let status = json(&String::from_utf8(output.stdout).unwrap());
+    assert!(status["chunks_done"] == 2 && status["missing"] == "1-2", "{status}");
+    let broken = status["broken"].as_array().unwrap();
+    assert!(broken.len() == 2 && broken[1][0] == 2, "{status}");
+    assert_eq!(broken[0], serde_json::json!([1, "is a folder, expected a file"]));
+    let output = run(&["status", shown(&sweep)]);
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("part-000001.parquet: is a folder, expected a file\n"), "{told}");
+    let out = folder.path().join("all.parquet");
+    for command in [&["merge", "--out", shown(&out)][..], &["run", "--chunk", "1"]] {
+        let args = [&command[..1], &[shown(&sweep)], &command[1..]].concat();
+        let said = error(&args);
+        assert!(said.contains("part-000001.parquet: is a folder, expected a file"), "{said}");
+    }
+    assert!(!out.exists());
+}
+
 /// Hours of rows were lost where a plan was made anew in the folder of another one.
 #[test]
 fn whole_rows_of_another_plan_are_not_replaced() {

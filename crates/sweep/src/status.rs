@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::chunk::{chunk_path, read_chunk};
 use crate::{Plan, SweepError};
+use impactlab_core::error_chain;
 
 /// What of a sweep is done.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -44,7 +45,7 @@ impl SweepStatus {
     /// Reads every chunk in the folder of a sweep.
     ///
     /// # Errors
-    /// [`SweepError`] if there is no plan, or a file cannot be opened.
+    /// [`SweepError`] if there is no plan.
     pub fn read(folder: &Path) -> Result<(Plan, Self), SweepError> {
         let plan = Plan::stored(folder)?;
         let mut status = Self {
@@ -62,7 +63,8 @@ impl SweepStatus {
         let mut missing = Vec::new();
         let mut reasons = BTreeMap::new();
         for chunk in 0..plan.n_chunks() {
-            if !chunk_path(folder, chunk).exists() {
+            let path = chunk_path(folder, chunk);
+            if !path.exists() {
                 missing.push(chunk);
                 continue;
             }
@@ -77,11 +79,10 @@ impl SweepStatus {
                         }
                     }
                 }
-                Err(SweepError::Rows { what, .. }) => {
+                Err(error) => {
                     missing.push(chunk);
-                    status.broken.push((chunk, what));
+                    status.broken.push((chunk, fault_of(&path, &error)));
                 }
-                Err(error) => return Err(error),
             }
         }
         status.missing = array_expression(&missing);
@@ -106,6 +107,18 @@ impl SweepStatus {
         tasks.sort_unstable();
         tasks.dedup();
         array_expression(&tasks)
+    }
+}
+
+/// What is wrong with a chunk, without its path, which stands before it.
+fn fault_of(path: &Path, error: &SweepError) -> String {
+    match error {
+        SweepError::Rows { what, .. } => what.clone(),
+        error => {
+            let text = error_chain(error);
+            let path = format!("{}: ", path.display());
+            text.strip_prefix(&path).unwrap_or(&text).to_owned()
+        }
     }
 }
 
