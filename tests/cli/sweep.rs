@@ -218,6 +218,11 @@ fn a_plan_that_is_wrong_is_refused_with_its_place() {
             "uniform = [20, 15]",
             "plan.toml:13:11: vary.target_speed_m_s.uniform",
         ),
+        // Every row had the upper end.
+        ("uniform = [15, 20]", "uniform = [-1e308, 1e308]", "low < high and a finite width"),
+        ("uniform = [15, 20]", "uniform = [-inf, 20]", "uniform is [-inf, 20], expected finite"),
+        ("uniform = [15, 20]", "lognormal = [15, 900]", "plan.toml:13:13: vary.target_speed_m_s"),
+        ("uniform = [15, 20]", "steps = [-1e308, 1e308, 3]", "each above the last"),
         ("uniform = [15, 20]", "uniform = [15, 200]", "expected 1 to 100 m/s throughout"),
         ("uniform = [15, 20]", "normal = [15, 2]", "with low and high"),
         ("list = [0, 1]", "list = [0, 2]", "a list of whole numbers, 0 to 1"),

@@ -325,12 +325,14 @@ impl VaryFile {
         } else if let Some([low, mode, high]) = self.triangular {
             Distribution::Triangular { low, mode, high }
         } else if let Some((low, high, n)) = self.steps {
-            let rises = low < high;
-            if !rises || !(2..=MOST_STEPS).contains(&n) {
-                let counts = format!("number of values from 2 to {MOST_STEPS}");
-                return wrong("steps", &format!("[low, high, {counts}] with low < high"));
-            }
             let at = |i: usize| low + (high - low) * i as f64 / (n - 1) as f64;
+            let is_count = (2..=MOST_STEPS).contains(&n);
+            if !is_count || !at(n - 1).is_finite() || !(1..n).all(|i| at(i - 1) < at(i)) {
+                let counts = format!("number of values from 2 to {MOST_STEPS}");
+                let expected =
+                    format!("[low, high, {counts}] with low < high, each above the last");
+                return wrong("steps", &expected);
+            }
             let values = (0..n).map(|i| Value::from(at(i))).collect();
             Distribution::List { values, weights: Vec::new() }
         } else {

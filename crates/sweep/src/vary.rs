@@ -21,6 +21,9 @@ pub struct Vary {
     pub distribution: Distribution,
 }
 
+/// The least and the greatest share of the probability that a row can have: half of a 32-bit step from 0 and 1.
+const END_SHARES: [f64; 2] = [0.5 / 4_294_967_296.0, 1.0 - 0.5 / 4_294_967_296.0];
+
 /// A distribution of one number, or a list of values.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
@@ -91,7 +94,7 @@ impl Distribution {
             return Some("finite numbers".to_owned());
         }
         let is_good = match self {
-            Self::Uniform { low, high } => low < high,
+            Self::Uniform { low, high } => low < high && (high - low).is_finite(),
             Self::Normal { sigma, .. } => *sigma > 0.0 && ends.windows(2).all(|it| it[0] < it[1]),
             Self::Lognormal { median, log_sigma, low, .. } => {
                 *median > 0.0
@@ -99,24 +102,41 @@ impl Distribution {
                     && low.is_none_or(|low| low >= 0.0)
                     && ends.windows(2).all(|it| it[0] < it[1])
             }
-            Self::Triangular { low, mode, high } => low < high && increasing(&[*low, *mode, *high]),
+            // A row has the root of a product of two widths.
+            Self::Triangular { low, mode, high } => {
+                low < high
+                    && increasing(&[*low, *mode, *high])
+                    && ((high - low) * (high - low)).is_normal()
+            }
             Self::List { values, weights } => return list_fault(values, weights),
         };
         let expected = match self {
-            Self::Uniform { .. } => "[low, high] with low < high",
+            Self::Uniform { .. } => "[low, high] with low < high and a finite width",
             Self::Normal { .. } => "[mean, sigma] with sigma > 0, and low < high",
             Self::Lognormal { .. } => {
                 "[median, sigma of the logarithm], both more than 0, and 0 <= low < high"
             }
-            Self::Triangular { .. } => "[low, mode, high] in this order with low < high",
+            Self::Triangular { .. } => {
+                "[low, mode, high] in this order with low < high, and the square of the width a number"
+            }
             Self::List { .. } => "",
         };
-        let is_empty = is_good && self.normal().is_some_and(|normal| normal.share() < 1e-9);
-        match (is_good, is_empty) {
-            (true, false) => None,
-            (true, true) => Some("ends between which the distribution has some share".to_owned()),
-            (false, _) => Some(expected.to_owned()),
+        if !is_good {
+            return Some(expected.to_owned());
         }
+        if self.normal().is_some_and(|normal| normal.share() < 1e-9) {
+            return Some("ends between which the distribution has some share".to_owned());
+        }
+        let is_number = |number: f64| {
+            number.is_finite() && (number > 0.0 || !matches!(self, Self::Lognormal { .. }))
+        };
+        let in_rows = END_SHARES.map(|share| self.at(share).number);
+        (!in_rows.into_iter().all(is_number)).then(|| {
+            let [least, most] = in_rows;
+            format!(
+                "a distribution whose rows have numbers: they would reach from {least:e} to {most:e}"
+            )
+        })
     }
 
     fn numbers(&self) -> (Vec<f64>, Vec<f64>) {
@@ -250,9 +270,10 @@ fn list_fault(values: &[Value], weights: &[f64]) -> Option<String> {
     if values.is_empty() || !values.iter().all(is_plain) {
         return Some("one or more numbers, texts, or true and false".to_owned());
     }
-    let is_good = weights.iter().all(|weight| *weight >= 0.0) && weights.iter().sum::<f64>() > 0.0;
+    let total: f64 = weights.iter().sum();
+    let is_good = weights.iter().all(|weight| *weight >= 0.0) && total > 0.0 && total.is_finite();
     if !weights.is_empty() && (weights.len() != values.len() || !is_good) {
-        return Some(format!("{} weights of 0 or more, not all 0", values.len()));
+        return Some(format!("{} weights of 0 or more, not all 0, of a finite sum", values.len()));
     }
     None
 }
@@ -328,6 +349,44 @@ mod tests {
         let empty = Distribution::List { values: Vec::new(), weights: Vec::new() };
         for bad in [nan, turned, far, empty] {
             assert!(bad.fault().is_some(), "{bad:?}");
+        }
+    }
+
+    /// The width of the first was infinite, and every row had its upper end; the rows of others had infinity, 0 or
+    /// the last value alone.
+    #[test]
+    fn a_distribution_whose_numbers_overflow_in_rows_is_refused() {
+        let (low, high) = (-1e308, 1e308);
+        let normal = |mean, sigma, low| Distribution::Normal { mean, sigma, low, high: None };
+        let lognormal =
+            |log_sigma, high| Distribution::Lognormal { median: 0.7, log_sigma, low: None, high };
+        let triangular = |high: f64| Distribution::Triangular { low: 0.0, mode: high / 2.0, high };
+        let values = vec![Value::from(1.0), Value::from(2.0)];
+        for bad in [
+            Distribution::Uniform { low, high },
+            normal(1e308, 1e308, None),
+            normal(1e308, 1e308, Some(0.0)),
+            lognormal(900.0, None),
+            lognormal(900.0, Some(2.0)),
+            triangular(1e200),
+            triangular(1e-200),
+            Distribution::List { values, weights: vec![1e308, 1e308] },
+        ] {
+            assert!(bad.fault().is_some(), "{bad:?}");
+        }
+        // As wide as it can be.
+        for good in [
+            Distribution::Uniform { low: low / 2.0, high: high / 2.0 },
+            normal(1e300, 1e300, None),
+            lognormal(100.0, None),
+            triangular(1e150),
+        ] {
+            assert_eq!(good.fault(), None);
+            let ends = END_SHARES.map(|share| good.at(share).number);
+            assert!(
+                ends[0] < ends[1] && ends.iter().all(|end| end.is_finite()),
+                "{good:?} {ends:?}"
+            );
         }
     }
 }
