@@ -309,7 +309,8 @@ fn every_file_that_a_row_may_read_is_known_by_its_content() {
     fs::write(&path, &text).unwrap();
     fs::write(at("b.toml"), fs::read_to_string(at("b.toml")).unwrap() + "# changed\n").unwrap();
     let said = error(&["run", shown(&sweep)]);
-    assert!(said.contains("the content of") && said.contains("b.toml"), "{said}");
+    assert!(said.contains("plan.json: the plan was made with the content of"), "{said}");
+    assert!(said.contains("b.toml"), "{said}");
 }
 
 /// A data set, whose folder stands in the question, named from the folder in which the plan is made.
@@ -359,12 +360,12 @@ fn a_plan_of_another_program_or_of_another_file_is_not_run() {
     plan["program"] = "0.0.1+other".into();
     fs::write(&path, plan.to_string()).unwrap();
     let said = error(&["run", shown(&sweep), "--chunk", "0"]);
-    assert!(said.contains("made with impactlab 0.0.1+other"), "{said}");
+    assert!(said.contains("plan.json: the plan was made with impactlab 0.0.1+other"), "{said}");
     let mut plan = json(&text);
     plan["networks"]["force"] = "ab".into();
     fs::write(&path, plan.to_string()).unwrap();
     let said = error(&["run", shown(&sweep), "--chunk", "0"]);
-    assert!(said.contains("made with networks"), "{said}");
+    assert!(said.contains("plan.json: the plan was made with networks"), "{said}");
     let mut plan = json(&text);
     plan["chunk"] = 0.into();
     fs::write(&path, plan.to_string()).unwrap();

@@ -44,10 +44,13 @@ pub enum SweepError {
     },
     /// The plan was made by another program, or with other networks or files.
     #[error(
-        "the plan was made with {what} {planned}, and this is {present}; run it with the program that \
-         made it, or make the plan anew in another folder"
+        "{}: the plan was made with {what} {planned}, and this is {present}; run it with the program that \
+         made it, or make the plan anew in another folder",
+        path.display()
     )]
     OtherProgram {
+        /// The plan.
+        path: PathBuf,
         /// What differs.
         what: String,
         /// As in the plan.

@@ -267,7 +267,7 @@ impl Plan {
     /// [`SweepError`] says what is wrong or differs.
     pub fn open(folder: &Path, library: &Library) -> Result<Self, SweepError> {
         let plan = Self::stored(folder)?;
-        plan.check_program(library)?;
+        plan.check_program(folder, library)?;
         Ok(plan)
     }
 
@@ -310,11 +310,13 @@ impl Plan {
 
     /// Checks that program, networks and files are those of the plan.
     ///
+    /// - `folder`: of the sweep, whose plan the error names.
+    ///
     /// # Errors
     /// [`SweepError::OtherProgram`] with the first that is not.
-    pub fn check_program(&self, library: &Library) -> Result<(), SweepError> {
+    pub fn check_program(&self, folder: &Path, library: &Library) -> Result<(), SweepError> {
         if self.program != program::version() {
-            return Err(other("impactlab", &self.program, program::version()));
+            return Err(other(folder, "impactlab", &self.program, program::version()));
         }
         let present = networks(library)?;
         if self.networks != present {
@@ -322,21 +324,21 @@ impl Plan {
                 of.iter().map(|(name, sha256)| format!("{name} {sha256}")).collect::<Vec<_>>()
             };
             let [planned, present] = [&self.networks, &present].map(|of| list(of).join(", "));
-            return Err(other("networks", &planned, &present));
+            return Err(other(folder, "networks", &planned, &present));
         }
-        self.check_files()
+        self.check_files(folder)
     }
 
     /// Checks that the files that rows read still are those of the plan.
     ///
     /// # Errors
     /// [`SweepError::OtherProgram`] with the first that is not, [`SweepError::Input`].
-    pub(crate) fn check_files(&self) -> Result<(), SweepError> {
+    pub(crate) fn check_files(&self, folder: &Path) -> Result<(), SweepError> {
         for planned in &self.files {
             let present = used(&planned.path)?;
             if present != *planned {
                 let what = format!("the content of {},", planned.path.display());
-                return Err(other(&what, &planned.sha256, &present.sha256));
+                return Err(other(folder, &what, &planned.sha256, &present.sha256));
             }
         }
         Ok(())
@@ -471,9 +473,9 @@ impl Plan {
 }
 
 /// What of a plan is not as it is here.
-fn other(what: &str, planned: &str, present: &str) -> SweepError {
+fn other(folder: &Path, what: &str, planned: &str, present: &str) -> SweepError {
     let [what, planned, present] = [what, planned, present].map(str::to_owned);
-    SweepError::OtherProgram { what, planned, present }
+    SweepError::OtherProgram { path: folder.join(PLAN_FILE), what, planned, present }
 }
 
 /// Digests of the networks that come with the program.

@@ -108,7 +108,7 @@ pub fn run_chunks(
         };
         let rows = answer_rows(&answerer, plan.rows_of(chunk), &mut report)?;
         // A file that was changed in the meantime would have answered some of the rows.
-        plan.check_files()?;
+        plan.check_files(folder)?;
         let table = Rows::new(&plan, chunk, &rows);
         let bytes = rows_bytes(&table)?;
         write_bytes(&path, Existing::Replace, &bytes)?;
