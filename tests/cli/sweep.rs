@@ -227,6 +227,7 @@ fn a_plan_that_is_wrong_is_refused_with_its_place() {
         ("uniform = [15, 20]", "normal = [15, 2]", "with low and high"),
         ("list = [0, 1]", "list = [0, 2]", "a list of whole numbers, 0 to 1"),
         ("limit_s = 20", "limit_s = 1000", "plan.toml:9:11: pit.limit_s is 1000"),
+        ("limit_s = 20", "friction_sigma = -1", "plan.toml:9:18: pit.friction_sigma is -1"),
         // Each place was there twice.
         (
             "uniform = [15, 20]",
@@ -375,6 +376,12 @@ fn a_plan_of_another_program_or_of_another_file_is_not_run() {
     fs::write(&path, text.replace("toyota-camry-2018", "camry")).unwrap();
     let said = error(&["run", shown(&sweep), "--chunk", "0"]);
     assert!(said.contains("plan.json: is no plan of a sweep: pit.pairs"), "{said}");
+    // It counted as 0.
+    let mut plan = json(&text);
+    plan["question"]["pit"]["road_sigma"] = (-0.05_f64).into();
+    fs::write(&path, plan.to_string()).unwrap();
+    let said = error(&["run", shown(&sweep), "--chunk", "0"]);
+    assert!(said.contains("is no plan of a sweep: pit.friction_sigma: expected 0 to"), "{said}");
     fs::write(&path, &text).unwrap();
     let said = error(&["run", shown(&sweep), "--chunk", "4"]);
     assert!(said.contains("there is no chunk 4"), "{said}");

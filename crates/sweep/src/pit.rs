@@ -6,7 +6,9 @@
 
 use impactlab_core::collision::{ContactLocation, Scenario};
 use impactlab_core::numerics::{latin_normals, random_stream};
-use impactlab_core::ranges::{CONTACT_OFFSET, ROAD_FRICTION, Range, SPEED, YAW_RATE};
+use impactlab_core::ranges::{
+    CONTACT_OFFSET, REST_LIMIT, ROAD_FRICTION, ROAD_FRICTION_SIGMA, Range, SPEED, YAW_RATE,
+};
 use impactlab_core::vehicle::frames::Heading;
 use impactlab_core::vehicle::{
     Braking, Countersteer, DEFAULT_BRAKE_RISE_S, Ending, PitDriver, PitEnd, StabilityControl,
@@ -138,6 +140,30 @@ impl PitInput {
 }
 
 impl PitQuestion {
+    /// What is wrong with it, as the key of a plan file and what is expected; `None` if nothing is: a number out
+    /// of its range, or pairs of vehicles that nobody knows or of which every row would have the first.
+    ///
+    /// - `varies_pair`: whether each row says which pair it has.
+    pub(crate) fn fault(&self, varies_pair: bool) -> Option<(String, String)> {
+        let numbers = [
+            ("pit.limit_s", self.limit_s, REST_LIMIT),
+            ("pit.friction_sigma", self.road_sigma, ROAD_FRICTION_SIGMA),
+        ];
+        if let Some((key, _, range)) = numbers.iter().find(|(_, value, of)| !of.contains(*value)) {
+            return Some(((*key).to_owned(), range.expected_si()));
+        }
+        let mut ids = self.pairs.iter().flat_map(|pair| [&pair.struck, &pair.striking]);
+        let expected = match ids.find(|id| built_in_vehicle(id).is_none()) {
+            Some(id) => format!("vehicles that impactlab vehicles lists, not {id:?}"),
+            None if self.pairs.len() < 2 || varies_pair => return None,
+            None => {
+                "one pair, or [vary.pair] with a list of places in it: every row would have the first"
+                    .to_owned()
+            }
+        };
+        Some(("pit.pairs".to_owned(), expected))
+    }
+
     /// What is expected of an input that may not be as it is; `None` if it may.
     pub(crate) fn fault_of(&self, vary: &Vary) -> Option<String> {
         let Some(input) = PitInput::from_name(&vary.name) else {

@@ -19,7 +19,6 @@ use impactlab_core::data::write::WriteError;
 use impactlab_core::data::{DataError, Existing, MAX_SETTINGS_BYTES, read_utf8, write_atomically};
 use impactlab_core::numerics::{random_stream, sha256_hex};
 use impactlab_core::program;
-use impactlab_core::vehicle::built_in_vehicle;
 use impactlab_study::case_file::UsedFile;
 use impactlab_study::{Library, ModelChoice, Request};
 
@@ -364,22 +363,11 @@ impl Plan {
             return Some(("vary".to_owned(), "at least one input that varies".to_owned()));
         }
         let of_inputs = || self.vary.iter().find_map(|vary| self.fault_of(vary));
-        self.fault_of_pairs().or_else(of_inputs).or_else(|| self.fault_of_names())
-    }
-
-    /// Pairs of vehicles that nobody knows, or of which every row would have the first.
-    fn fault_of_pairs(&self) -> Option<(String, String)> {
-        let SweptQuestion::Pit(pit) = &self.question else { return None };
-        let mut ids = pit.pairs.iter().flat_map(|pair| [&pair.struck, &pair.striking]);
-        let expected = match ids.find(|id| built_in_vehicle(id).is_none()) {
-            Some(id) => format!("vehicles that impactlab vehicles lists, not {id:?}"),
-            None if pit.pairs.len() < 2 || self.varies(PitInput::Pair) => return None,
-            None => {
-                "one pair, or [vary.pair] with a list of places in it: every row would have the first"
-                    .to_owned()
-            }
+        let of_pit = match &self.question {
+            SweptQuestion::Pit(pit) => pit.fault(self.varies(PitInput::Pair)),
+            SweptQuestion::Request(_) => None,
         };
-        Some(("pit.pairs".to_owned(), expected))
+        of_pit.or_else(of_inputs).or_else(|| self.fault_of_names())
     }
 
     fn varies(&self, input: PitInput) -> bool {

@@ -41,7 +41,6 @@ use impactlab_core::data::{
     MAX_SETTINGS_BYTES, TomlError, TomlFile, read_utf8, without_byte_order_mark,
 };
 use impactlab_core::program;
-use impactlab_core::ranges::{REST_LIMIT, ROAD_FRICTION_SIGMA};
 use impactlab_core::vehicle::{built_in_vehicle, usual_road_sigma};
 use impactlab_study::{DEFAULT_VEHICLE, Library, Request};
 
@@ -257,23 +256,12 @@ impl PitFile {
             return Err(file.wrong_value("pit.scenario", name, expected).into());
         }
         let limit_s = self.limit_s.unwrap_or(DEFAULT_LIMIT_S);
-        if !REST_LIMIT.contains(limit_s) {
-            return Err(out_of_range(file, "pit.limit_s", limit_s, &REST_LIMIT.expected_si()));
-        }
         let struck = scenario.struck_vehicle.as_deref().and_then(built_in_vehicle);
         let friction = struck.unwrap_or_else(|| DEFAULT_VEHICLE.parameters()).tires.friction;
         let usual = if friction_varies { 0.0 } else { usual_road_sigma(friction) };
         let road_sigma = self.friction_sigma.unwrap_or(usual);
-        if !ROAD_FRICTION_SIGMA.contains(road_sigma) {
-            let expected = ROAD_FRICTION_SIGMA.expected_si();
-            return Err(out_of_range(file, "pit.friction_sigma", road_sigma, &expected));
-        }
         Ok(PitQuestion { scenario, pairs: self.pairs, road_sigma, limit_s })
     }
-}
-
-fn out_of_range(file: TomlFile<'_>, key: &str, value: f64, expected: &str) -> SweepError {
-    file.wrong_value(key, &value.to_string(), expected).into()
 }
 
 impl RequestFile {
