@@ -24,6 +24,7 @@ use parquet::schema::types::{ColumnDescPtr, ColumnPath, PrimitiveTypeBuilder, Ty
 use crate::rows::{Column, Rows, RowsMeta};
 use crate::{Plan, SweepError};
 use impactlab_core::data::open_file;
+use impactlab_core::numerics::sha256_hex;
 
 /// Column of the numbers of the rows.
 const ROW: &str = "row";
@@ -33,6 +34,9 @@ pub(crate) const CAVEATS: &str = "caveats";
 
 /// Column of the reasons of rows that failed.
 const REASON: &str = "reason";
+
+/// What a file has the digests of its row groups under: compressed pages have no sum of their own.
+const DIGEST: &str = "rows_sha256";
 
 /// Level of zstd.
 const ZSTD_LEVEL: i32 = 3;
@@ -77,6 +81,7 @@ impl Write for Buffer {
 pub(crate) struct RowsWriter {
     buffer: Buffer,
     writer: SerializedFileWriter<Buffer>,
+    digests: Vec<String>,
 }
 
 impl RowsWriter {
@@ -85,7 +90,7 @@ impl RowsWriter {
         let buffer = Buffer::default();
         let properties = Arc::new(properties(like)?);
         let writer = SerializedFileWriter::new(buffer.clone(), schema(like)?, properties)?;
-        Ok(Self { buffer, writer })
+        Ok(Self { buffer, writer, digests: Vec::new() })
     }
 
     /// Adds rows, and gives the bytes that are due.
@@ -103,15 +108,23 @@ impl RowsWriter {
             put::<ByteArrayType>(&mut group, &texts)?;
         }
         group.close()?;
+        self.digests.push(rows.sha256(0..rows.len()));
         self.writer.flush().map_err(|error| ParquetError::External(Box::new(error)))?;
         Ok(self.buffer.take())
     }
 
     /// The last bytes.
-    pub fn finish(self) -> Result<Vec<u8>, ParquetError> {
+    pub fn finish(mut self) -> Result<Vec<u8>, ParquetError> {
+        let digest = digest_of(&self.digests);
+        self.writer.append_key_value_metadata(KeyValue::new(DIGEST.to_owned(), digest));
         self.writer.close()?;
         Ok(self.buffer.take())
     }
+}
+
+/// One digest of those of all row groups.
+fn digest_of(groups: &[String]) -> String {
+    sha256_hex(groups.iter().map(String::as_bytes))
 }
 
 fn put<T: DataType>(
@@ -210,6 +223,8 @@ struct Stated {
     /// Names of the inputs.
     inputs: Vec<String>,
     meta: RowsMeta,
+    /// Digest of the rows; none in tables of former programs.
+    digest: Option<String>,
 }
 
 impl Stated {
@@ -234,7 +249,8 @@ impl Stated {
         };
         let units = serde_json::from_str(stated("units")?).map_err(json)?;
         let inputs = serde_json::from_str(stated("inputs")?).map_err(json)?;
-        Ok(Self { units, inputs, meta })
+        let digest = stated(DIGEST).ok().map(str::to_owned);
+        Ok(Self { units, inputs, meta, digest })
     }
 }
 
@@ -245,7 +261,7 @@ fn read_file(file: File) -> Result<Rows, ParquetError> {
     if !(0..=MOST_ROWS).contains(&n_rows) {
         return Err(refused(&format!("{n_rows} rows, expected at most {MOST_ROWS}")));
     }
-    let Stated { units, inputs: input_names, meta } = Stated::read(metadata)?;
+    let Stated { units, inputs: input_names, meta, digest } = Stated::read(metadata)?;
     let schema = metadata.schema_descr();
     let names: Vec<String> =
         schema.columns().iter().map(|column| column.name().to_owned()).collect();
@@ -267,11 +283,13 @@ fn read_file(file: File) -> Result<Rows, ParquetError> {
     let mut index: Vec<i64> = Vec::new();
     let mut numbers: Vec<Vec<f64>> = vec![Vec::new(); n_numbers];
     let (mut caveats, mut reasons): (Vec<ByteArray>, Vec<ByteArray>) = (Vec::new(), Vec::new());
+    let mut groups = Vec::new();
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         let left = n_rows - index.len() as i64;
         let n = Some(group.metadata().num_rows()).filter(|n| (0..=left).contains(n));
         let n = n.ok_or_else(|| refused("more rows than it says"))? as usize;
+        groups.push(index.len()..index.len() + n);
         take::<Int64Type>(&*group, 0, n, &mut index)?;
         for (idx, values) in numbers.iter_mut().enumerate() {
             take::<DoubleType>(&*group, idx + 1, n, values)?;
@@ -294,7 +312,14 @@ fn read_file(file: File) -> Result<Rows, ParquetError> {
         Column { name: name.clone(), unit, values }
     });
     let (inputs, outcomes) = columns.partition(|column| input_names.contains(&column.name));
-    Ok(Rows { inputs, outcomes, index, caveats, reasons, meta })
+    let rows = Rows { inputs, outcomes, index, caveats, reasons, meta };
+    if let Some(digest) = digest {
+        let of_groups: Vec<String> = groups.into_iter().map(|group| rows.sha256(group)).collect();
+        if digest_of(&of_groups) != digest {
+            return Err(refused("it has other rows than were written"));
+        }
+    }
+    Ok(rows)
 }
 
 /// A column of texts.
@@ -366,7 +391,10 @@ fn chunk_fault(rows: &Rows, plan: &Plan, chunk: u64) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use rand::Rng as _;
+
     use super::*;
+    use impactlab_core::numerics::random_stream;
 
     fn rows() -> Rows {
         let column = |name: &str, unit: &str, values: Vec<f64>| Column {
@@ -423,6 +451,33 @@ mod tests {
         std::fs::write(&path, rows_bytes(&named).unwrap()).unwrap();
         let read = read_rows(&path).unwrap();
         assert_eq!((read.caveats, read.outcomes[0].values[2]), (None, 3.0));
+    }
+
+    /// A row with a number that nothing has computed was one like any other.
+    #[test]
+    fn a_bit_that_has_turned_in_the_numbers_is_found() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.parquet");
+        let mut rng = random_stream(5, "numbers that cannot be compressed", 0);
+        let values: Vec<f64> = (0..200).map(|_| f64::from_bits(rng.next_u64())).collect();
+        // The lowest bytes of all numbers stand together, as they are.
+        let lowest: Vec<u8> = values.iter().map(|value| value.to_bits() as u8).collect();
+        let mut table = Rows {
+            index: (0..200).collect(),
+            caveats: None,
+            reasons: vec![String::new(); 200],
+            ..rows()
+        };
+        table.inputs[0].values = values;
+        table.outcomes[0].values = vec![0.0; 200];
+        let mut bytes = rows_bytes(&table).unwrap();
+        std::fs::write(&path, &bytes).unwrap();
+        assert_eq!(read_rows(&path).unwrap().index, table.index);
+        let at = bytes.windows(lowest.len()).position(|window| window == lowest).unwrap();
+        bytes[at + 77] ^= 1;
+        std::fs::write(&path, &bytes).unwrap();
+        let refused = read_rows(&path).unwrap_err().to_string();
+        assert!(refused.ends_with("it has other rows than were written"), "{refused}");
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! A table of rows as it stands in a file.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use crate::row::Row;
 use crate::{Plan, SweptQuestion};
+use impactlab_core::numerics::sha256_hex;
 
 /// Rows of a sweep, in columns.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,6 +106,31 @@ impl Rows {
     /// A column by its name.
     pub fn column(&self, name: &str) -> Option<&Column> {
         self.columns().find(|column| column.name == name)
+    }
+
+    /// SHA-256 of some of the rows, and of the names and units of their columns, hexadecimal.
+    ///
+    /// - `places`: of the rows in the table.
+    pub(crate) fn sha256(&self, places: Range<usize>) -> String {
+        let mut bytes = (self.inputs.len() as u64).to_le_bytes().to_vec();
+        let mut text = |text: &str| {
+            bytes.extend((text.len() as u64).to_le_bytes());
+            bytes.extend(text.as_bytes());
+        };
+        self.columns().for_each(|column| {
+            text(&column.name);
+            text(&column.unit);
+        });
+        for texts in self.caveats.iter().chain([&self.reasons]) {
+            texts.get(places.clone()).unwrap_or_default().iter().for_each(|it| text(it));
+        }
+        let index = self.index.get(places.clone()).unwrap_or_default();
+        bytes.extend(index.iter().flat_map(|row| row.to_le_bytes()));
+        for column in self.columns() {
+            let values = column.values.get(places.clone()).unwrap_or_default();
+            bytes.extend(values.iter().flat_map(|value| value.to_bits().to_le_bytes()));
+        }
+        sha256_hex([bytes.as_slice()])
     }
 
     /// All columns of numbers, inputs first.
