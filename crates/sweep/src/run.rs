@@ -9,7 +9,7 @@ use crate::chunk::{chunk_path, read_chunk, read_rows, rows_bytes};
 use crate::row::{Answerer, Row};
 use crate::rows::Rows;
 use crate::{Plan, SweepError};
-use impactlab_core::data::{Existing, write_bytes};
+use impactlab_core::data::{Existing, check_target, write_bytes};
 use impactlab_core::jobs::{Progress, ProgressCallback};
 use impactlab_study::Library;
 
@@ -101,6 +101,8 @@ pub fn run_chunks(
                 Err(error) => return Err(error),
             }
         }
+        // Before the work whose rows would be lost.
+        check_target(&path, Existing::Replace)?;
         let mut report = |n: u64| {
             done += n;
             let message = format!("chunk {chunk} of {n_chunks}");
@@ -248,6 +250,27 @@ mod tests {
                 row.outcomes == Err("friction is inf, expected a finite number".to_owned());
             assert_eq!(is_refused, row.inputs[0].is_infinite(), "{row:?}");
         }
+    }
+
+    /// Its rows were lost once they were computed.
+    #[cfg(unix)]
+    #[test]
+    fn a_chunk_that_cannot_be_written_is_not_computed() {
+        let folder = tempfile::tempdir().unwrap();
+        let sweep = folder.path().join("sweep");
+        let plan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/atlas/pit.toml");
+        let library = Library::default();
+        let plan = Plan { n: 1, chunk: 1, ..Plan::read(&plan, &library).unwrap() };
+        plan.write(&sweep).unwrap();
+        let missing = folder.path().join("missing/part.parquet");
+        std::os::unix::fs::symlink(missing, chunk_path(&sweep, 0)).unwrap();
+        let mut n_told = 0;
+        let refused = run_chunks(&sweep, &[0], &library, &mut |_| {
+            n_told += 1;
+            ControlFlow::Continue(())
+        });
+        assert!(matches!(&refused, Err(SweepError::Data(_))), "{refused:?}");
+        assert_eq!(n_told, 0);
     }
 
     fn chunks(stride: Option<u64>, variables: &[(&str, &str)]) -> Result<Vec<u64>, SweepError> {
