@@ -93,22 +93,36 @@ fn read(
     name: Option<&str>,
 ) -> PyResult<Request> {
     let text = text_of(request)?;
-    let folder = folder.map(absolute).transpose()?;
-    let parsed: Result<Request, serde_json::Error> = match (&folder, name) {
-        (None, None) => serde_json::from_str(&text),
-        _ => serde_json::from_str(&text).and_then(|mut value: Value| {
-            if let Some(folder) = &folder {
-                begin_paths_at(&mut value, folder);
-            }
-            if let (Some(name), Some(fields)) = (name, value.as_object_mut()) {
-                fields.entry("question").or_insert_with(|| name.into());
-            }
-            serde_json::from_value(value)
-        }),
+    let text = match name {
+        Some(name) => of_kind(name, &text),
+        None => text,
     };
+    let folder = folder.map(absolute).transpose()?;
+    // Read as it is, too: of a key that stands twice a value has the last one alone.
+    let parsed = serde_json::from_str::<Request>(&text).and_then(|question| match &folder {
+        None => Ok(question),
+        Some(folder) => {
+            let mut value: Value = serde_json::from_str(&text)?;
+            begin_paths_at(&mut value, folder);
+            serde_json::from_value(value)
+        }
+    });
     parsed.map_err(|error| {
         ImpactlabError::new_err(format!("request: is no request: {}", error_chain(&error)))
     })
+}
+
+/// JSON of a question that says of which kind it is; as it is where it says so already, or is no object.
+fn of_kind(name: &str, text: &str) -> String {
+    let value: Value = serde_json::from_str(text).unwrap_or_default();
+    let fields = value.as_object().filter(|fields| !fields.contains_key("question"));
+    match fields.zip(text.trim_start().strip_prefix('{')) {
+        Some((fields, rest)) => {
+            let comma = if fields.is_empty() { "" } else { "," };
+            format!("{{\"question\":\"{name}\"{comma}{rest}")
+        }
+        None => text.to_owned(),
+    }
 }
 
 /// A folder from the root on, in text that JSON can hold.

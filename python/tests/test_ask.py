@@ -53,6 +53,19 @@ def test_what_is_no_question_is_refused() -> None:
         impactlab.ask({**SIMULATION, "friction": object()})
 
 
+def test_a_key_that_stands_twice_is_refused_however_it_is_asked(tmp_path: Path) -> None:
+    """With a folder, and by the functions of one question, the last one was taken."""
+    unsaid = {key: value for key, value in SIMULATION.items() if key != "question"}
+    for question in [SIMULATION, unsaid]:
+        twice = json.dumps(question)[:-1] + ', "seed": 1, "seed": 2}'
+        for folder in [None, tmp_path]:
+            with pytest.raises(impactlab.ImpactlabError, match="duplicate field `seed`"):
+                impactlab.simulate(twice, folder=folder)
+    twice = json.dumps(SIMULATION)[:-1] + ', "seed": 1, "seed": 2}'
+    with pytest.raises(impactlab.ImpactlabError, match="duplicate field `seed`"):
+        impactlab.ask(twice, folder=tmp_path)
+
+
 def test_numbers_of_numpy_and_paths_are_taken() -> None:
     question = {
         **SIMULATION,
