@@ -33,6 +33,10 @@ const UTM: [std::ops::RangeInclusive<u16>; 4] =
 /// Michigan, Montana, North Dakota, Oregon, South Carolina and Utah. Later realisations mix with systems in metres.
 const IN_FEET: std::ops::RangeInclusive<u16> = 2225..=2289;
 
+/// EPSG numbers that projected systems alone have, of which UTM and the grids of most countries are. Others stand among
+/// those of longitude and latitude.
+const PROJECTED: [std::ops::RangeInclusive<u16>; 2] = [2000..=3799, 20_000..=32_766];
+
 /// EPSG numbers of systems of heights: NAVD 88 in metres and both feet, and NGVD 29.
 const HEIGHT_SYSTEMS: [(u16, LengthUnit); 4] = [
     (5703, LengthUnit::Metre),
@@ -82,6 +86,11 @@ impl Stated {
 /// Whether a system by its EPSG number is one of those of State Plane in feet.
 pub(in crate::site) fn is_in_feet(system: &u16) -> bool {
     IN_FEET.contains(system)
+}
+
+/// Whether a system by its EPSG number is certainly one of easting and northing.
+pub(in crate::site) fn is_projected(system: &u16) -> bool {
+    PROJECTED.iter().any(|numbers| numbers.contains(system))
 }
 
 /// What a header states; `None` if it has no coordinate system.

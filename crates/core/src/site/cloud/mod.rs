@@ -22,7 +22,7 @@ mod import;
 mod tests;
 
 pub use import::{CloudOptions, CloudReport, import_cloud};
-pub(in crate::site) use las_crs::{StatedUnit, is_in_feet, of_keys, of_wkt};
+pub(in crate::site) use las_crs::{StatedUnit, is_in_feet, is_projected, of_keys, of_wkt};
 pub(in crate::site) use las_unit::OF_MERCATOR;
 pub use las_unit::stated_cloud_unit;
 pub use source::{CloudFormat, CloudSummary, survey_cloud};

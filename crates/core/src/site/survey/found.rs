@@ -13,6 +13,8 @@ pub(super) struct Found {
     pub things: Vec<Thing>,
     /// Whether their coordinates are `[longitude, latitude]`, degrees; else `[easting, northing]`, m.
     pub is_geographic: bool,
+    /// Whether nothing but their size says so, and they may be lengths of a local grid as well.
+    pub may_be_grid: bool,
     /// Whether easting and northing were turned into metres already.
     pub is_in_metres: bool,
     /// How much of each kind is left out.

@@ -1,14 +1,14 @@
 //! Reads GeoJSON (RFC 7946): features with their geometries, longitude before latitude.
 //!
-//! Files of the draft of 2008 may have a member `crs` and the coordinates of a grid; coordinates that are no
-//! degrees are taken as easting and northing in metres. Those of web maps have metres that grow with the latitude
+//! Files of the draft of 2008 may have a member `crs` and the coordinates of a grid. Coordinates of a grid that is stated,
+//! those whose unit is said, and those that are no degrees are taken as easting and northing in metres. Those of web maps have metres that grow with the latitude
 //! and are refused; those of a State Plane in feet are until the unit is said.
 
 use std::path::Path;
 
 use geojson::{Feature, GeoJson, GeometryValue, JsonObject, Position};
 
-use crate::site::cloud::is_in_feet;
+use crate::site::cloud::{is_in_feet, is_projected};
 use crate::site::survey::found::{Found, PROPERTIES, Thing, kept_text, wrong};
 use crate::site::{MapShape, SiteError, SurveyOptions};
 
@@ -17,6 +17,9 @@ const NAMES: [&str; 5] = ["name", "Name", "NAME", "title", "id"];
 
 /// Codes of the Mercator projection of web maps.
 const OF_WEB_MAPS: [&str; 5] = ["3857", "3785", "900913", "102100", "102113"];
+
+/// Extent of coordinates from which they may as well be lengths of a local grid: 2 km as degrees.
+const DOUBTFUL_EXTENT: f64 = 0.02;
 
 /// Codes of the systems of receivers and maps, and of those that are within two metres of them: ETRS89, NAD 83.
 const OF_DEGREES: [&str; 7] = ["CRS84", "CRS84h", "4326", "4979", "4258", "4269", "WGS84"];
@@ -63,9 +66,15 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
             None => found.leave_out("without geometry"),
         }
     }
-    let is_degree = |[lon, lat]: &[f64; 2]| lon.abs() <= 180.0 && lat.abs() <= 90.0;
-    found.is_geographic = found.things.iter().flat_map(|thing| &thing.at).all(is_degree);
     let code = system.as_deref().and_then(|name| name.rsplit(':').next()).unwrap_or_default();
+    let is_of_degrees = OF_DEGREES.iter().any(|of| of.eq_ignore_ascii_case(code));
+    let is_of_grid = OF_WEB_MAPS.contains(&code)
+        || code.to_uppercase().contains("UTM")
+        || code.parse::<u16>().is_ok_and(|number| is_projected(&number))
+        || options.unit.is_some() && !is_of_degrees;
+    let are_degrees = coordinates_are_degrees(&found);
+    found.is_geographic = are_degrees && !is_of_grid;
+    found.may_be_grid = found.is_geographic && system.is_none();
     if !found.is_geographic && OF_WEB_MAPS.contains(&code) {
         let expected = "has the coordinates of web maps (EPSG:3857), whose metres are too short by the cosine of the \
                         latitude; export it in degrees (EPSG:4326) or in a grid of the country";
@@ -79,22 +88,45 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
         );
         return Err(wrong(path, None, &expected));
     }
-    let is_other = !code.is_empty() && !OF_DEGREES.iter().any(|of| of.eq_ignore_ascii_case(code));
+    let is_other = !code.is_empty() && !is_of_degrees;
     if let Some(name) = system.as_ref().filter(|_| found.is_geographic && is_other) {
         found.notes.push(format!(
             "it states the system {name}, and its coordinates are read as longitude and latitude of WGS 84: of another \
              datum the place is off by up to some hundred metres, and of a grid it is wrong; export it in degrees of \
-             WGS 84 (EPSG:4326)"
+             WGS 84 (EPSG:4326), or say the unit of the grid (--unit m)"
         ));
+    }
+    if found.may_be_grid && extent(&found) > DOUBTFUL_EXTENT {
+        found.notes.push(
+            "it states no system, and its coordinates are taken as longitude and latitude, in which they reach over \
+             kilometres; if they are lengths of a local grid, say their unit (--unit m)"
+                .to_owned(),
+        );
     }
     if !found.is_geographic {
         let of = system.map(|name| format!(" of the system {name}")).unwrap_or_default();
+        let why = match are_degrees {
+            true => "coordinates could be longitude and latitude, but a grid or a unit is stated",
+            false => "coordinates are no longitude and latitude",
+        };
         found.notes.push(format!(
-            "coordinates are no longitude and latitude; taken as easting and northing{of}, in metres unless another \
-             unit is said (--unit)"
+            "{why}; taken as easting and northing{of}, in metres unless another unit is said (--unit)"
         ));
     }
     Ok(found)
+}
+
+/// Whether all coordinates could be longitude and latitude.
+fn coordinates_are_degrees(found: &Found) -> bool {
+    let is_degree = |[lon, lat]: &[f64; 2]| lon.abs() <= 180.0 && lat.abs() <= 90.0;
+    found.things.iter().flat_map(|thing| &thing.at).all(is_degree)
+}
+
+/// Largest distance from the first point along one of the coordinates, in their unit.
+fn extent(found: &Found) -> f64 {
+    let mut all = found.things.iter().flat_map(|thing| &thing.at);
+    let Some([x, y]) = all.next() else { return 0.0 };
+    all.map(|at| (at[0] - x).abs().max((at[1] - y).abs())).fold(0.0, f64::max)
 }
 
 /// The name of the reference system that a file of the draft of 2008 states.

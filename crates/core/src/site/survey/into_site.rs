@@ -37,7 +37,7 @@ pub enum SurveyFormat {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SurveyOptions {
     /// Unit of easting, northing and height, instead of what the file says, or of metres if it says none.
-    /// Files in degrees have none.
+    /// Files in degrees have none; GeoJSON with one that does not state degrees is in a grid.
     pub unit: Option<LengthUnit>,
     /// Codes whose points are joined to a line, beside the words for lines.
     pub line_codes: Vec<String>,
@@ -223,6 +223,8 @@ struct Frame {
     origin: SiteOrigin,
     /// Length of the unit of a file in a grid, m; that of a table is in its numbers already.
     unit_m: f64,
+    /// Whether degrees may be lengths of a local grid.
+    may_be_grid: bool,
 }
 
 impl Frame {
@@ -235,12 +237,13 @@ impl Frame {
         };
         if found.is_geographic {
             let place = GeographicPlace::from_degrees(y, x);
-            return Ok(Self { place, origin: SiteOrigin::default(), unit_m: 1.0 });
+            let (origin, may_be_grid) = (SiteOrigin::default(), found.may_be_grid);
+            return Ok(Self { place, origin, unit_m: 1.0, may_be_grid });
         }
         let unit = options.unit.filter(|_| !found.is_in_metres).unwrap_or_default();
         let survey_m = [x, y].map(|value| (value * unit.length_m()).floor());
         let origin = SiteOrigin { survey_m, ..SiteOrigin::default() };
-        Ok(Self { place: None, origin, unit_m: unit.length_m() })
+        Ok(Self { place: None, origin, unit_m: unit.length_m(), may_be_grid: false })
     }
 
     /// The points of a thing, m.
@@ -248,9 +251,12 @@ impl Frame {
         let place = |at: &[f64; 2]| {
             let at_m = self.site_m(*at).filter(|[x, y]| x.hypot(*y) <= LARGEST_M);
             at_m.ok_or_else(|| {
+                let ask = match self.may_be_grid {
+                    true => "they are taken as degrees; if they are a local grid, say its unit (--unit m)",
+                    false => "are the coordinates right?",
+                };
                 let message = format!(
-                    "has a point at {}, {}, expected one within 100 km of the first; are the coordinates \
-                     right?",
+                    "has a point at {}, {}, expected one within 100 km of the first; {ask}",
                     at[0], at[1]
                 );
                 wrong(path, thing.line, &message)

@@ -106,6 +106,47 @@ fn a_state_plane_in_feet_is_read_once_its_unit_is_said() {
     assert!((length_m - 120_000.0 / 3937.0).abs() < 1e-6, "{length_m}");
 }
 
+/// A skid of 0.8 m in a grid was one of 68 km, and one of 30 m was refused as if a coordinate were mistyped.
+#[test]
+fn a_grid_that_is_stated_is_one_though_its_coordinates_could_be_degrees() {
+    let map = |system: &str, end: &str| {
+        let crs = format!(r#""crs": {{"type": "name", "properties": {{"name": "{system}"}}}},"#);
+        let crs = if system.is_empty() { String::new() } else { crs };
+        format!(r#"{{{crs} "type": "LineString", "coordinates": [[12.5, 40.5], [{end}, 40.5]]}}"#)
+    };
+    let in_metres = SurveyOptions { unit: Some(LengthUnit::Metre), ..SurveyOptions::default() };
+    let unsaid = SurveyOptions::default();
+    for (system, end, options) in [
+        ("urn:ogc:def:crs:EPSG::25832", "13.3", &unsaid),
+        ("EPSG:31467", "13.3", &unsaid),
+        ("urn:adv:crs:ETRS89_UTM32", "13.3", &unsaid),
+        ("EPSG:5683", "13.3", &in_metres),
+        ("", "13.3", &in_metres),
+        ("", "42.5", &in_metres),
+    ] {
+        let site = read_as("map.geojson", &map(system, end), options).unwrap();
+        let length_m = distance_m(site.lines[0].line_m[0], site.lines[0].line_m[1]);
+        let expected_m = end.parse::<f64>().unwrap() - 12.5;
+        assert!((length_m - expected_m).abs() < 1e-9, "{system} {end}: {length_m} m");
+        let notes = site.notes.join(" ");
+        assert!(site.geographic.is_none() && notes.contains("could be longitude"), "{notes}");
+    }
+    let error = read("map.geojson", &map("", "42.5")).unwrap_err();
+    assert!(error.contains("taken as degrees") && error.contains("--unit m"), "{error}");
+    let notes = read("map.geojson", &map("", "13.3")).unwrap().notes.join(" ");
+    assert!(notes.contains("states no system") && notes.contains("--unit m"), "{notes}");
+    let notes = read("map.geojson", &map("", "12.5001")).unwrap().notes.join(" ");
+    assert!(!notes.contains("--unit"), "{notes}");
+    // Degrees that are stated have no unit, and neither has KML.
+    assert!(
+        read_as("map.geojson", &map("EPSG:4326", "12.5001"), &in_metres)
+            .unwrap()
+            .geographic
+            .is_some()
+    );
+    assert!(read_as("map.kml", KML, &in_metres).unwrap().geographic.is_some());
+}
+
 /// A feature by itself and a geometry, as databases give them, have the system that a collection has.
 #[test]
 fn the_system_of_a_feature_or_a_geometry_counts() {
