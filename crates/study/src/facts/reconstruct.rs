@@ -35,10 +35,10 @@ impl ReconstructReport {
     }
 
     /// How often such intervals held; none where there are no intervals, and of an impact elsewhere than on a
-    /// flank behind the CG, of cars that were followed through later contacts, and of a single car, on which
-    /// it was not measured.
+    /// flank behind the CG, of cars that met otherwise than those that were tried or were followed through later
+    /// contacts, and of a single car, on which it was not measured.
     pub fn held_table(&self) -> Option<FactTable> {
-        let known = self.known.filter(|_| self.is_of_one_impact())?;
+        let known = self.known.filter(|_| self.met_as_tried && self.is_of_one_impact())?;
         Measurement::shipped(Measured::reconstruction_of(known))?.held_table(None)
     }
 

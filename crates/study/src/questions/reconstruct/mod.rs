@@ -11,3 +11,4 @@ pub(crate) mod paths;
 mod progress;
 pub(crate) mod request;
 mod single_car;
+mod tried;

@@ -21,6 +21,7 @@ use crate::questions::reconstruct::later_contacts::{LaterContactsReport, WhyNot,
 use crate::questions::reconstruct::paths::compared_marks;
 use crate::questions::reconstruct::progress::progress;
 use crate::questions::reconstruct::single_car;
+use crate::questions::reconstruct::tried::untried_course;
 use crate::{
     Answer, Event, EvidenceChoice, FrictionZoneReport, InputKind, Library, Observer, Provenance,
     Question, Sampling, StudyError, VehicleChoice,
@@ -135,6 +136,9 @@ pub struct ReconstructReport {
     /// and of a single car.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub known: Option<KnownEvidence>,
+    /// Whether the cars met as in those, too.
+    #[serde(skip)]
+    pub met_as_tried: bool,
     /// Whether the cars meet again, and what was made of it; none where sampling was stopped before, and of
     /// a single car.
     pub later_contacts: Option<LaterContactsReport>,
@@ -432,10 +436,15 @@ impl ReconstructRequest {
         });
         caveats.extend(assumptions);
         let quantities = posterior.quantities();
+        let is_alike = known.is_some() && !are_followed;
+        let untried = untried_course(&evidence, &quantities).filter(|_| is_alike);
+        let met_as_tried = untried.is_none();
+        caveats.extend(untried);
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
             kind: evidence.kind,
             known,
+            met_as_tried,
             marks: compared_marks(&target, &particles, &posterior, &quantities, &modes),
             quantities,
             hinges: posterior.hinges(),
