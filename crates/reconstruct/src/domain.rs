@@ -83,10 +83,19 @@ pub fn outside_domain(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) 
         false => vehicle_caveats(cars),
     };
     let damage = damage_off_car(&evidence.damage, cars);
+    let stopped = evidence.stopped_rests().into_iter();
+    let stopped = stopped.map(|text| Caveat::new(CaveatKind::SecondContact, text));
     let odd = evidence.odd().into_iter().chain(evidence.odd_rests(cars));
     let odd = odd.chain(evidence.odd_distances(cars)).chain(hidden_zones(zones));
     let odd = odd.map(|text| Caveat::new(CaveatKind::DoubtfulData, text));
-    vehicles.into_iter().chain(road).chain(zone_caveats(zones)).chain(damage).chain(odd).collect()
+    vehicles
+        .into_iter()
+        .chain(road)
+        .chain(zone_caveats(zones))
+        .chain(damage)
+        .chain(stopped)
+        .chain(odd)
+        .collect()
 }
 
 /// What of both vehicles lies outside of what rules and model are known to hold for.

@@ -43,7 +43,7 @@ impl KnownEvidence {
             (false, true) => Self::WithoutEdr,
             (false, false) => Self::RestOnly,
         };
-        let is_tried = evidence.rest.is_some() && cars.is_hit_behind_cg(evidence);
+        let is_tried = evidence.free_rest().is_some() && cars.is_hit_behind_cg(evidence);
         (!evidence.is_single_car() && is_tried).then_some(like)
     }
 

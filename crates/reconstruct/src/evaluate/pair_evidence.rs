@@ -195,6 +195,7 @@ impl<R: Rng> Errors<R> {
             y_m: Some(y_m),
             position_sigma_m: Some(REST_SIGMA_M),
             heading_rad: Some(heading.into()),
+            stopped_by: None,
         }
     }
 

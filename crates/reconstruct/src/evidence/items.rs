@@ -299,6 +299,16 @@ impl Evidence {
         Self { kind: EvidenceKind::SingleCar, ..Self::empty() }
     }
 
+    /// Where the struck or single car came to rest, if nothing but the road stopped it.
+    pub fn free_rest(&self) -> Option<RestPose> {
+        self.rest.filter(RestPose::is_free)
+    }
+
+    /// Where the striking car came to rest, likewise.
+    pub fn free_striking_rest(&self) -> Option<RestPose> {
+        self.striking_rest.filter(RestPose::is_free)
+    }
+
     /// Peak friction of the road, where it was measured.
     pub fn road_friction(&self) -> Option<Measured> {
         self.friction.and_then(|road| road.friction())
@@ -322,14 +332,14 @@ impl Evidence {
     /// Whether anything says which way a car went: where it came to rest, its marks, or where and how fast it
     /// was seen on the way. A recorder knows the velocity before and its change alone.
     pub fn tells_way(&self) -> bool {
-        let is_at_rest = self.rest.is_some() || self.striking_rest.is_some();
+        let is_at_rest = self.free_rest().or(self.free_striking_rest()).is_some();
         let has_marks = !self.marks.is_empty() || !self.striking_marks.is_empty();
         is_at_rest || has_marks || !self.positions.is_empty() || !self.speeds.is_empty()
     }
 
     /// Whether anything of the striking car is evidence of how it moved, so that it is followed.
     pub fn follows_striking_car(&self) -> bool {
-        let is_found = self.striking_rest.is_some()
+        let is_found = self.free_striking_rest().is_some()
             || !self.striking_marks.is_empty()
             || self.striking_edr.is_some();
         is_found && !self.is_single_car()

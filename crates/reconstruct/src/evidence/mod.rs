@@ -48,7 +48,7 @@ pub use places::FoundPlace;
 pub use position::VideoPosition;
 pub use prior_ranges::PriorRanges;
 pub use recorder::{Edr, RECORDED_SPEED_SHARE};
-pub use rest::RestPose;
+pub use rest::{RestPose, StoppedBy};
 pub use road::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Road};
 pub use skid::SkidBefore;
 pub use speed::RecordedSpeed;

@@ -28,6 +28,27 @@ impl Evidence {
     }
 }
 
+impl Evidence {
+    /// Cars that a further obstacle stopped, in words: their rest says nothing of their speeds.
+    pub(crate) fn stopped_rests(&self) -> Vec<Phrase> {
+        let own = if self.is_single_car() { rest::SINGLE } else { rest::STRUCK };
+        let both = [(own, self.rest), (rest::STRIKING, self.striking_rest)];
+        let stopped = both.into_iter().filter(|(_, at)| at.is_some_and(|at| !at.is_free()));
+        let text = Phrase::new(
+            "{0}: a further obstacle stopped it, so that its speed does not follow from there and the rest is left out; \
+             what the obstacle took is in no speed, and marks and positions count as those of a car that moves freely: \
+             leave out those from after it",
+            "{0}: Ein weiteres Hindernis hielt es auf. Aus dieser Endlage folgt keine Geschwindigkeit, sie bleibt außer \
+             Betracht. Was das Hindernis aufnahm, ist in keiner Geschwindigkeit enthalten, und Spuren und Orte gelten \
+             als die eines frei bewegten Fahrzeugs: jene von danach weglassen",
+        );
+        let named = |(section, _): (Section, _)| {
+            text.clone().with(PhraseValue::Term(section.title.to_owned()))
+        };
+        stopped.map(named).collect()
+    }
+}
+
 fn odd_rest((section, at): (Section, RestPose), marks: &[Mark], car: &Car) -> Option<Phrase> {
     let locked = marks.iter().filter(|mark| mark.kind == Some(MarkKind::Locked));
     let ends: Vec<[f64; 2]> = locked.filter_map(|mark| end_off_wheel_m(mark, &at, car)).collect();
@@ -104,6 +125,7 @@ mod tests {
                 y_m: Some(y_m),
                 position_sigma_m: sigma_m,
                 heading_rad: Some(Stated { value: Some(heading_rad), sigma: None }),
+                ..RestPose::default()
             });
             let found = evidence.odd_rests(&cars);
             found.iter().map(|of| of.say(&Default::default())).collect::<Vec<_>>()
@@ -119,6 +141,45 @@ mod tests {
         // Within the errors of a pace.
         assert!(told(bumper_x, bumper_y, -2.9, Some(0.9)).is_empty());
         assert!(told(45.3, -6.2, -2.85, None).is_empty());
+    }
+
+    /// A car that a pole stopped after 12 m was as slow as one that slid no farther.
+    #[test]
+    fn a_rest_that_an_obstacle_made_is_left_out_and_told() {
+        use crate::evaluate::KnownEvidence;
+        use crate::evidence::StoppedBy;
+        use crate::{Discrepancy, ForwardModel, HandCalculation, ReconstructionTarget};
+        let free = read(SPIN);
+        assert_eq!(free.stopped_rests(), []);
+        let mut stopped = free.clone();
+        stopped.rest.as_mut().unwrap().stopped_by = Some(StoppedBy::Obstacle);
+        let again = read(&stopped.to_toml());
+        assert_eq!(again, stopped);
+        let told: Vec<String> =
+            stopped.stopped_rests().iter().map(|text| text.say(&Default::default())).collect();
+        let begin = "struck car at rest: a further obstacle stopped it";
+        assert!(told.len() == 1 && told[0].starts_with(begin), "{told:?}");
+        let has_rest = |evidence: &Evidence| {
+            let cars = Cars::new(evidence, None, None);
+            let by_hand = HandCalculation::new(evidence, &cars, &[]).is_some();
+            let is_known = KnownEvidence::like(evidence, &cars).is_some();
+            let model = ForwardModel::new(evidence, cars);
+            let z = vec![vec![0.0; model.prior().components().len()]];
+            let target =
+                ReconstructionTarget::new(evidence.clone(), model.clone(), Discrepancy::default());
+            let names: Vec<String> = model
+                .motions(&z, |motion| target.terms(&motion))
+                .concat()
+                .into_iter()
+                .map(|term| term.name)
+                .collect();
+            assert!(!names.is_empty());
+            [by_hand, is_known, names.iter().any(|name| name == "rest x")]
+        };
+        assert_eq!(has_rest(&free), [true; 3]);
+        assert_eq!(has_rest(&stopped), [false; 3]);
+        stopped.striking_rest = stopped.rest;
+        assert!(!stopped.follows_striking_car() && stopped.stopped_rests().len() == 2);
     }
 
     #[test]

@@ -42,6 +42,7 @@
 //! heading_rad = 2.9                 # whole turns do not count
 //! heading_sigma_rad = 0.035
 //! # known = false                   # the car was moved
+//! # stopped_by = "obstacle"         # a pole, a kerb, a third car: the rest is left out
 //!
 //! [after]                           # and [striking_after]
 //! blocked_wheels = ["RR"]           # locked: FL, FR, RL, RR; [] if all turn

@@ -8,7 +8,9 @@ use impactlab_core::ranges::{ANGLE_SIGMA, EVIDENCE_HEADING, EVIDENCE_POSITION, P
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::evidence::{Field, Fields, Group, Item, Measured, PlaceMut, Section, Sigma, Stated};
+use crate::evidence::{
+    Choice, Field, Fields, Group, Item, Measured, PlaceMut, Section, Sigma, Stated, Word,
+};
 use crate::likelihood::{Comparison, PathResidual};
 
 /// Points of an ellipse.
@@ -49,6 +51,33 @@ const HEADING_SIGMA: Sigma = Sigma::fixed(
     0.035,
     "2 deg, read off a sketch to scale or a photograph from above; assumed",
 );
+const STOPPED_BY: Choice =
+    Choice { key: "stopped_by", label: "stopped by", is_required: false, none: "the road alone" };
+
+/// What stopped a car beside the road.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr, JsonSchema,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum StoppedBy {
+    /// Something that it struck on its way, such as a pole, a kerb or a third car.
+    Obstacle,
+}
+
+impl Word for StoppedBy {
+    const ALL: &'static [Self] = &[Self::Obstacle];
+
+    fn word(self) -> &'static str {
+        self.into()
+    }
+
+    fn label(self) -> &'static str {
+        match self {
+            Self::Obstacle => "a further obstacle",
+        }
+    }
+}
 
 /// Where a car came to rest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -62,13 +91,17 @@ pub struct RestPose {
     pub position_sigma_m: Option<f64>,
     /// Heading, rad; whole turns do not count.
     pub heading_rad: Option<Stated>,
+    /// What stopped it beside the road: the speed does not follow from such a place; `None` if it rolled or slid freely.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped_by: Option<StoppedBy>,
 }
 
 impl Item for RestPose {
     fn fields(&mut self, visitor: &mut impl Fields) {
-        let Self { x_m, y_m, position_sigma_m: sigma_m, heading_rad } = self;
+        let Self { x_m, y_m, position_sigma_m: sigma_m, heading_rad, stopped_by } = self;
         visitor.place([&X, &Y], &SIGMA, PlaceMut { x_m, y_m, sigma_m });
         visitor.measured(&HEADING, &HEADING_SIGMA, heading_rad);
+        visitor.optional_choice(&STOPPED_BY, stopped_by);
     }
 }
 
@@ -76,6 +109,11 @@ impl RestPose {
     /// Place of the CG, m; `None` until it is entered.
     pub fn place_m(&self) -> Option<[f64; 2]> {
         Some([self.x_m?, self.y_m?])
+    }
+
+    /// Whether the car rolled or slid there freely, so that its speed follows from the place.
+    pub fn is_free(&self) -> bool {
+        self.stopped_by.is_none()
     }
 
     /// Standard deviation of the place along each axis, m.
@@ -105,8 +143,11 @@ impl RestPose {
         (0..=N_ELLIPSE).map(point).collect()
     }
 
+    /// Says nothing of a car that something else stopped.
     pub(super) fn compare(&self, comparison: &mut Comparison<'_>) {
-        comparison.part("rest pose", |comparison| self.add_to(comparison));
+        if self.is_free() {
+            comparison.part("rest pose", |comparison| self.add_to(comparison));
+        }
     }
 
     fn add_to(&self, comparison: &mut Comparison<'_>) {

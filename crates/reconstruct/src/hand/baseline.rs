@@ -49,7 +49,7 @@ impl HandCalculation {
     ///
     /// - `zones`: parts of the ground with their own friction.
     pub fn new(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Option<Self> {
-        let [x_m, y_m] = evidence.rest?.place_m()?;
+        let [x_m, y_m] = evidence.free_rest()?.place_m()?;
         let distance_m = x_m.hypot(y_m);
         let road = evidence
             .road_friction()

@@ -107,8 +107,9 @@ impl HandCheck {
         if !zones.is_empty() {
             return Vec::new();
         }
-        let struck = slide(evidence, evidence.rest.as_ref(), Which::Struck, cars);
-        let striking = slide(evidence, evidence.striking_rest.as_ref(), Which::Striking, cars);
+        let rests = [evidence.free_rest(), evidence.free_striking_rest()];
+        let struck = slide(evidence, rests[0].as_ref(), Which::Struck, cars);
+        let striking = slide(evidence, rests[1].as_ref(), Which::Striking, cars);
         let of_struck = match evidence.is_single_car() {
             true => HandSpeed::AtStart,
             false => HandSpeed::StruckAfter,

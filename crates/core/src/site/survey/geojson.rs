@@ -1,8 +1,8 @@
 //! Reads GeoJSON (RFC 7946): features with their geometries, longitude before latitude.
 //!
 //! Files of the draft of 2008 may have a member `crs` and the coordinates of a grid. Coordinates of a grid that is stated,
-//! those whose unit is said, and those that are no degrees are taken as easting and northing in metres. Those of web maps have metres that grow with the latitude
-//! and are refused; those of a State Plane in feet are until the unit is said.
+//! those whose unit is said, and those that are no degrees are taken as easting and northing in metres. Those of web maps
+//! have metres that grow with the latitude and are refused; those of a State Plane in feet are until the unit is said.
 
 use std::path::Path;
 

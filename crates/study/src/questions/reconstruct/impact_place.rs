@@ -17,7 +17,7 @@ pub(super) fn impact_place(evidence: &Evidence) -> Option<Caveat> {
     if evidence.is_single_car() {
         return None;
     }
-    let [x_m, y_m] = evidence.rest?.place_m()?;
+    let [x_m, y_m] = evidence.free_rest()?.place_m()?;
     let way_m = x_m.hypot(y_m);
     let [shortest_m, longest_m] = SHORT_WAY_M;
     let value = Phrase::new(
