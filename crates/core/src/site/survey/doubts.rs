@@ -1,5 +1,5 @@
 //! What the coordinates of a survey say that a slip of the hand explains better: columns that are swapped, so that the
-//! ground is mirrored, a wrong digit within a line, a unit.
+//! ground is mirrored, a wrong digit within a line, a unit, degrees.
 
 use crate::site::MapShape;
 use crate::site::survey::found::Thing;
@@ -16,6 +16,9 @@ const LONG_RATIO: f64 = 20.0;
 /// Distance from the first point that the place of a collision hardly has, m.
 const FAR_M: f64 = 5000.0;
 
+/// Distance from the first point within which no ground lies, m: as degrees it is 2 km.
+const NEAR_M: f64 = 0.02;
+
 /// What is in doubt, a sentence each.
 ///
 /// - `things`: to the east and to the north;
@@ -23,7 +26,8 @@ const FAR_M: f64 = 5000.0;
 pub(super) fn doubts(things: &[Thing], unit_m: f64) -> Vec<String> {
     let lines = things.iter().filter(|thing| thing.shape == MapShape::Line);
     let long_steps = lines.filter_map(|line| long_step(line, unit_m));
-    swapped(things, unit_m).into_iter().chain(long_steps).chain(far(things, unit_m)).collect()
+    let extent = far(things, unit_m).or_else(|| in_degrees(things, unit_m));
+    swapped(things, unit_m).into_iter().chain(long_steps).chain(extent).collect()
 }
 
 fn distance(a: &[f64; 2], b: &[f64; 2]) -> f64 {
@@ -58,12 +62,30 @@ fn long_step(line: &Thing, unit_m: f64) -> Option<String> {
 }
 
 fn far(things: &[Thing], unit_m: f64) -> Option<String> {
-    let first = things.first()?.at.first()?;
-    let all = things.iter().flat_map(|thing| &thing.at);
-    let farthest_m = all.map(|at| unit_m * distance(first, at)).fold(0.0, f64::max);
+    let farthest_m = farthest_m(things, unit_m)?;
     (farthest_m > FAR_M).then(|| {
         format!("the points lie up to {farthest_m:.0} m from the first one: is the unit right, and are all of one place?")
     })
+}
+
+/// Points in a grid that could be longitudes and latitudes and lie within a fingertip.
+fn in_degrees(things: &[Thing], unit_m: f64) -> Option<String> {
+    let farthest_m = farthest_m(things, unit_m)?;
+    let mut all = things.iter().flat_map(|thing| &thing.at);
+    let could_be = all.all(|at| at.iter().all(|value| (value * unit_m).abs() <= 180.0));
+    (could_be && farthest_m > 0.0 && farthest_m < NEAR_M).then(|| {
+        format!(
+            "all points lie within {:.1} mm: if the coordinates are longitude and latitude, the ground is far too small",
+            1e3 * farthest_m
+        )
+    })
+}
+
+/// Distance of the point that is farthest from the first one, m.
+fn farthest_m(things: &[Thing], unit_m: f64) -> Option<f64> {
+    let first = things.first()?.at.first()?;
+    let all = things.iter().flat_map(|thing| &thing.at);
+    Some(all.map(|at| unit_m * distance(first, at)).fold(0.0, f64::max))
 }
 
 #[cfg(test)]
@@ -94,5 +116,17 @@ mod tests {
         let unit = doubts(&[line(&in_mm)], 1.0);
         assert!(unit.len() == 1 && unit[0].contains("is the unit right"), "{unit:?}");
         assert_eq!(doubts(&[line(&in_mm)], 1e-3), Vec::<String>::new());
+    }
+
+    /// A table with E and N above degrees was a ground of a millimetre, without a word.
+    #[test]
+    fn degrees_in_columns_of_a_grid_are_told() {
+        let degrees = [[8.65, 49.87], [8.651, 49.87], [8.651, 49.8705]];
+        let found = doubts(&[line(&degrees)], 1.0);
+        let begin = "all points lie within 1.1 mm: if";
+        assert!(found.len() == 1 && found[0].starts_with(begin), "{found:?}");
+        let in_metres = degrees.map(|at| at.map(|value| 1e3 * (value - 8.0)));
+        assert_eq!(doubts(&[line(&in_metres)], 1.0), Vec::<String>::new());
+        assert_eq!(doubts(&[line(&degrees[..1])], 1.0), Vec::<String>::new());
     }
 }
