@@ -407,6 +407,16 @@ fn of_cases(kind: CaveatKind, text: Phrase, [n, n_all]: [usize; 2]) -> Option<Ca
     (n > 0).then(|| Caveat::new(kind, text.with(counted(n)).with(counted(n_all))))
 }
 
+/// That the response network forecasts a motion from which it has learned.
+pub(crate) fn learned_motion_caveat() -> Caveat {
+    let text = Phrase::new(
+        "the response network has learned from this motion: that it is near the record says nothing of other motions",
+        "Das Bewegungsnetz hat an dieser Bewegung gelernt: Dass es nahe an der Aufzeichnung liegt, besagt nichts über \
+         andere Bewegungen",
+    );
+    Caveat::new(CaveatKind::TrainedOn, text)
+}
+
 /// That a network tells of a case from which it has learned.
 pub(crate) fn learned_case_caveat(kind: CaveatKind) -> Caveat {
     let text = Phrase::new(

@@ -7,12 +7,13 @@ use crate::analysis::{
 use crate::caveats::restrictions;
 use crate::caveats::unused::{by_force_network, drivers_by_network, zones_by_network};
 use crate::questions::predict::motion::Noted;
+use crate::questions::simulate::dataset::take_case;
 use crate::{
     ForceSource, Library, MotionSource, Observer, PredictMotionRequest, SeriesFile, StudyError,
 };
-use impactlab_core::data::{ForceHistory, Outcome, check_contact_within};
+use impactlab_core::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use impactlab_core::uncertainty::Caveat;
-use impactlab_networks::response::ResponseModel;
+use impactlab_networks::response::{ResponseCase, ResponseModel};
 
 impl PredictMotionRequest {
     /// The forecast of the struck vehicle by itself.
@@ -33,6 +34,7 @@ impl PredictMotionRequest {
         {
             noted.unused.extend(by_force_network(scenario, &scenario.load()?)?);
         }
+        noted.unused.extend(self.learned_motion(model, struck, (library, observer)));
         noted.unused.extend(zones_by_network(struck));
         noted.unused.extend(drivers_by_network(struck));
         // A fleet has braked and dragged wheels, none that are steered or driven.
@@ -65,6 +67,21 @@ impl PredictMotionRequest {
         let forecast = forecast
             .map_err(|source| StudyError::Forecast { name: name(), source: Box::new(source) })?;
         Ok(Outcome::Complete(forecast))
+    }
+
+    /// That the network has learned from the recorded motion that it forecasts.
+    fn learned_motion(
+        &self,
+        model: &ResponseModel,
+        struck: &StruckVehicle,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Option<Caveat> {
+        let MotionSource::Case { dataset, case } = &self.motion.source else { return None };
+        let dataset = library.dataset(dataset, observer).ok()?.complete()?;
+        let case = take_case(&dataset, case).ok()?;
+        let is_motion = case.kind == DatasetKind::Trajectory;
+        let case = is_motion.then(|| ResponseCase::from_case(case, &struck.vehicle).ok())??;
+        model.is_trained_on(&case).then(restrictions::learned_motion_caveat)
     }
 }
 
@@ -100,13 +117,50 @@ pub(super) fn given_force(
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
     use crate::analysis::PulseSetup;
     use crate::questions::predict::motion::ONE_VEHICLE_DRAWS;
     use crate::{
-        COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, MotionSource, PredictMotionRequest, Question,
-        ScenarioChoice,
+        COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, Library, MotionSource, PredictMotionRequest,
+        Question, ScenarioChoice,
     };
     use impactlab_core::collision::Scenario;
+    use impactlab_core::uncertainty::CaveatKind;
+
+    /// A forecast lay on the record that the network had learned from, and nothing said why.
+    #[test]
+    fn a_motion_that_the_network_has_learned_from_is_said_to_be_one() {
+        let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../datasets");
+        let library = Library::default();
+        let mut go_on = |_: crate::Event<'_>| ControlFlow::Continue(());
+        for (set, is_learned) in
+            [("trajectories-cars/car-001", true), ("trajectories-cars-held-out", false)]
+        {
+            let mut dataset = data.join(set);
+            if !is_learned {
+                let mut cars = impactlab_core::data::list_folder(&dataset).unwrap();
+                cars.retain(|car| car.is_dir());
+                dataset = cars.into_iter().min().unwrap();
+            }
+            let loaded = library.dataset(&dataset, &mut go_on).unwrap().complete().unwrap();
+            let told = loaded.cases.iter().map(|case| {
+                let case = case.name.clone();
+                let source = MotionSource::Case { dataset: dataset.clone(), case };
+                let request = PredictMotionRequest {
+                    draws: 2,
+                    ..PredictMotionRequest::new(source, ForceSource::Given)
+                };
+                let answer = request.answer(&library, &mut |_| ControlFlow::Continue(()));
+                let caveats = answer.unwrap().complete().unwrap().report.caveats;
+                caveats.has(CaveatKind::TrainedOn)
+            });
+            let n_told = told.filter(|is_told| *is_told).count();
+            // Of this car nine motions of twelve are in the training.
+            assert_eq!(n_told, if is_learned { 9 } else { 0 }, "{}", dataset.display());
+        }
+    }
 
     #[test]
     fn one_vehicle_is_drawn_less_often_than_both_unless_somebody_says_how_often() {

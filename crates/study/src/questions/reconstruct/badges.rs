@@ -158,15 +158,16 @@ pub(super) fn of_validation(
             ", sämtlich auf einheitlichem Reibbeiwert,",
         ),
         (true, false) => Phrase::new(
-            ", all of which, unlike this one, were hit on a flank behind the CG and had a known rest pose,",
+            ", all of which, unlike this one, were hit on a flank behind the CG and came to rest freely at a known \
+             place,",
             ", sämtlich anders als hier an der Flanke hinter dem Schwerpunkt getroffen und mit bekannter \
-             Endlage,",
+             Endlage ohne weiteres Hindernis,",
         ),
         (false, false) => Phrase::new(
-            ", all of which, unlike this one, were hit on a flank behind the CG and had a known rest pose, and which \
-             stood on one friction,",
-            ", sämtlich anders als hier an der Flanke hinter dem Schwerpunkt getroffen, mit bekannter Endlage und \
-             auf einheitlichem Reibbeiwert,",
+            ", all of which, unlike this one, were hit on a flank behind the CG, came to rest freely at a known \
+             place and stood on one friction,",
+            ", sämtlich anders als hier an der Flanke hinter dem Schwerpunkt getroffen, mit bekannter Endlage \
+             ohne weiteres Hindernis und auf einheitlichem Reibbeiwert,",
         ),
     };
     let text = Phrase::new(
