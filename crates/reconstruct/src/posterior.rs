@@ -366,14 +366,9 @@ impl ReconstructionTarget {
 
 /// What sets the course of events of a particle apart.
 fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
-    let halves = (turned_rad / std::f64::consts::PI).round().abs();
     let is_single_car = !values.get(Latent::CarSpeed).is_nan();
-    let spin = match (halves as i64, turned_rad > 0.0) {
-        (0, _) if is_single_car => "keeps its direction".to_owned(),
-        (0, _) => "recovers".to_owned(),
-        (halves, true) => format!("turns left by about {}°", 180 * halves),
-        (halves, false) => format!("turns right by about {}°", 180 * halves),
-    };
+    let car = if is_single_car { "the car" } else { "the struck car" };
+    let spin = turn_name(car, turned_rad);
     let braked = if values.brakes() { "the driver brakes" } else { "the driver does not brake" };
     let blocked = match (
         values.get(Latent::BlockedWheel).is_nan(),
@@ -385,6 +380,17 @@ fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
         (false, Some(_)) => ", the other wheel near the damage blocked",
     };
     format!("{spin}, {braked}{blocked}")
+}
+
+/// How far a car has turned at rest, by the nearest number of half turns: within 90° of it.
+fn turn_name(car: &str, turned_rad: f64) -> String {
+    let halves = (turned_rad / std::f64::consts::PI).round() as i64;
+    let side = if halves > 0 { "left" } else { "right" };
+    let degrees = 180 * halves.abs();
+    match degrees {
+        0 => format!("{car} turns by less than 90°"),
+        _ => format!("{car} turns {side} by {}° to {}°", degrees - 90, degrees + 90),
+    }
 }
 
 #[cfg(test)]
@@ -413,6 +419,20 @@ mod tests {
             assert_eq!(posterior.budget(0).is_empty(), !has_intervals, "{n}");
             let written = serde_json::to_value(speed).unwrap();
             assert_eq!(written.get("interval_90").is_some(), has_intervals, "{written}");
+        }
+    }
+
+    /// A car that had turned by 100° “turns left by about 180°”, and nothing said which car, or what “recovers” is.
+    #[test]
+    fn a_course_of_events_says_which_car_turns_and_by_how_much() {
+        for (degrees, expected) in [
+            (80.0_f64, "the struck car turns by less than 90°"),
+            (-80.0, "the struck car turns by less than 90°"),
+            (100.0, "the struck car turns left by 90° to 270°"),
+            (-260.0, "the struck car turns right by 90° to 270°"),
+            (-300.0, "the struck car turns right by 270° to 450°"),
+        ] {
+            assert_eq!(turn_name("the struck car", degrees.to_radians()), expected, "{degrees}");
         }
     }
 

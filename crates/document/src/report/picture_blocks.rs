@@ -199,14 +199,14 @@ mod tests {
     use impactlab_study::ReconstructedPaths;
     use impactlab_study::analysis::DensityMap;
 
-    /// “36.9 %: turns right by about 180°, the driver does not brake” stood in German legends.
+    /// “36.9 %: the struck car turns right by 90° to 270°, the driver does not brake” stood in German legends.
     #[test]
     fn a_course_of_events_has_its_german_name_and_decimal_sign() {
         let date = ReportDate::new(2026, 11, 24).unwrap();
         let (language, units, paper) = (Language::De, UnitSystem::Si, Paper::A4);
         let german = Wording::new(&ReportSettings { language, units, paper, date });
         let course = Mode {
-            name: "turns right by about 180°, the driver does not brake".to_owned(),
+            name: "the struck car turns right by 90° to 270°, the driver does not brake".to_owned(),
             probability: 0.369,
             standard_error: 0.02,
             quantities: Vec::new(),
@@ -215,11 +215,13 @@ mod tests {
         let told = |wording: &Wording| {
             ReconstructedPaths::course_name(&course, wording, &|label| wording.name(label))
         };
-        let expected = "36,9 %: dreht um etwa 180° nach rechts, der Fahrer bremst nicht";
+        let expected = "36,9 %: das gestoßene Fahrzeug dreht sich um 90° bis 270° nach rechts, der Fahrer bremst \
+                        nicht";
         assert_eq!(told(&german), expected);
         // What a picture has in the language of the report already stays as it is.
         assert_eq!(german.name(expected), expected);
-        let english = "36.9 %: turns right by about 180°, the driver does not brake";
+        let english =
+            "36.9 %: the struck car turns right by 90° to 270°, the driver does not brake";
         assert_eq!(told(&Wording::english(UnitSystem::Si)), english);
     }
 

@@ -255,8 +255,11 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("car at the start", "Fahrzeug am Anfang"),
     ("striking car before the impact", "stoßendes Fahrzeug vor dem Stoß"),
     // Courses of events.
-    ("recovers", "fängt sich"),
-    ("keeps its direction", "behält seine Richtung"),
+    (
+        "the struck car turns by less than 90°",
+        "das gestoßene Fahrzeug dreht sich um weniger als 90°",
+    ),
+    ("the car turns by less than 90°", "das Fahrzeug dreht sich um weniger als 90°"),
     ("the driver brakes", "der Fahrer bremst"),
     ("the driver does not brake", "der Fahrer bremst nicht"),
     ("no wheel blocked", "kein Rad blockiert"),
@@ -884,8 +887,16 @@ pub(super) const TERMS: &[(&str, &str)] = &[
 
 /// Labels with numbers or names in them, for which `{}` stands in both languages.
 pub(super) const TEMPLATES: &[(&str, &str)] = &[
-    ("turns left by about {}", "dreht um etwa {} nach links"),
-    ("turns right by about {}", "dreht um etwa {} nach rechts"),
+    (
+        "the struck car turns left by {} to {}",
+        "das gestoßene Fahrzeug dreht sich um {} bis {} nach links",
+    ),
+    (
+        "the struck car turns right by {} to {}",
+        "das gestoßene Fahrzeug dreht sich um {} bis {} nach rechts",
+    ),
+    ("the car turns left by {} to {}", "das Fahrzeug dreht sich um {} bis {} nach links"),
+    ("the car turns right by {} to {}", "das Fahrzeug dreht sich um {} bis {} nach rechts"),
     ("mark {}", "Spur {}"),
     ("striking car mark {}", "Spur des stoßenden Fahrzeugs {}"),
     ("position at {}", "Lage bei {}"),

@@ -76,7 +76,7 @@ fn templates() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
 }
 
 /// What stands in a template: a label, a list of labels, or a name or number. Of a list every part must be
-/// known, since one that is not, as in “turns right by about 180°, the driver brakes”, is of another label.
+/// known, since one that is not, as in “the car turns right by 90° to 270°, the driver brakes”, is of another label.
 fn rest_of(language: Language, rest: &str) -> Option<String> {
     if let Some(known) = phrase_of(language, rest) {
         return Some(known);
@@ -191,10 +191,14 @@ mod tests {
             let has_words = cell.chars().filter(|c| c.is_alphabetic()).count() > 1;
             assert!(!has_words || phrase_of(Language::De, cell).is_some(), "{cell}");
         }
-        for mode in ["recovers, the driver brakes", "turns left by about 180°, no wheel blocked"] {
-            for part in mode.split(", ") {
-                assert!(phrase_of(Language::De, part).is_some(), "{part}");
+        for car in ["the car", "the struck car"] {
+            for turn in ["by less than 90°", "left by 90° to 270°", "right by 270° to 450°"] {
+                let turn = format!("{car} turns {turn}");
+                assert!(phrase_of(Language::De, &turn).is_some(), "{turn}");
             }
+        }
+        for part in ["the driver brakes", "the driver does not brake", "no wheel blocked"] {
+            assert!(phrase_of(Language::De, part).is_some(), "{part}");
         }
     }
 
@@ -246,10 +250,11 @@ mod tests {
         assert_eq!(phrase_of(Language::De, source).as_deref(), Some(expected));
     }
 
-    /// “turns right by about 180°, the driver brakes” lost its direction and kept its English end.
+    /// “the car turns right by 90° to 270°, the driver brakes” lost its direction and kept its English end.
     #[test]
     fn a_template_takes_no_other_label_in() {
-        for text in ["turns right by about 180°, the driver brakes", "mark 1, unheard of"] {
+        for text in ["the car turns right by 90° to 270°, the driver brakes", "mark 1, unheard of"]
+        {
             assert_eq!(phrase_of(Language::De, text), None, "{text}");
         }
     }
