@@ -538,15 +538,15 @@ terms! {
     ConfidenceFrom: "at least", "mindestens", "Lower bound of 95 % confidence of that share, after Wilson";
     ConfidenceTo: "at most", "höchstens", "Upper bound of 95 % confidence of that share, after Wilson";
     RecordedPairs: "Forecasts beside recorded pairs", "Vorhersagen neben aufgezeichneten Paaren";
-    PairDraws: "draws of each", "Züge je Fall";
+    PairDraws: "draws of each case", "Ziehungen je Fall";
     MeanPathError: "mean error", "mittlerer Fehler",
         "Mean over the cases of the mean distance of the positions over 4 s from the first contact";
     MedianPathError: "median error", "Median des Fehlers";
     MedianEndError: "at the end", "am Ende",
         "Median over the cases of the distance of the positions at the end of the record";
-    QuarterTurnRight: "90° right", "90° richtig",
+    QuarterTurnRight: "turn of 90° right", "Drehung um 90° richtig",
         "Share of the cases in which the likelier side of a turn of 90° was the recorded one";
-    HalfTurnRight: "180° right", "180° richtig", "The same of a turn of 180°";
+    HalfTurnRight: "turn of 180° right", "Drehung um 180° richtig", "The same of a turn of 180°";
     PathIn50: "path in 50 %", "Bahn in 50 %",
         "Share of the instants at which the region of 50 % held the recorded position";
     PathIn90: "path in 90 %", "Bahn in 90 %", "The same of the region of 90 %";
@@ -558,11 +558,13 @@ terms! {
     RecordedTurnWithout: "turn without, recorded", "Drehung ohne, aufgezeichnet",
         "Largest turn of the struck vehicle without stability control";
     ForecastTurnWithout: "turn without, median", "Drehung ohne, Median";
-    QuarterTurnChanceWithout: "90° or more without", "90° oder mehr ohne", "Probability";
+    QuarterTurnChanceWithout: "turns by 90° or more without", "dreht sich ohne sie um 90° oder mehr",
+        "Probability that the largest turn of the struck vehicle is so large";
     RecordedTurnWith: "turn with, recorded", "Drehung mit, aufgezeichnet",
         "Largest turn of the struck vehicle with stability control";
     ForecastTurnWith: "turn with, median", "Drehung mit, Median";
-    QuarterTurnChanceWith: "90° or more with", "90° oder mehr mit", "Probability";
+    QuarterTurnChanceWith: "turns by 90° or more with", "dreht sich mit ihr um 90° oder mehr",
+        "Probability that the largest turn of the struck vehicle is so large";
     SavedRecorded: "effect, recorded", "Wirkung, aufgezeichnet",
         "Saved: the vehicle turns by 90° or more without stability control alone";
     SavedForecast: "effect, forecast", "Wirkung, vorhergesagt";
@@ -574,10 +576,14 @@ terms! {
     SavedNotForecast: "saved, but not forecast to be", "gerettet, aber nicht so vorhergesagt";
     ForecastNotSaved: "forecast to be saved, but not", "als gerettet vorhergesagt, aber nicht";
     NeitherSavedNorForecast: "neither saved nor forecast to be", "weder gerettet noch so vorhergesagt";
-    TurnsWithoutRecorded: "90° or more without it, recorded", "ohne sie 90° oder mehr, aufgezeichnet";
-    TurnsWithoutForecast: "90° or more without it, forecast", "ohne sie 90° oder mehr, vorhergesagt";
-    TurnsWithRecorded: "90° or more with it, recorded", "mit ihr 90° oder mehr, aufgezeichnet";
-    TurnsWithForecast: "90° or more with it, forecast", "mit ihr 90° oder mehr, vorhergesagt";
+    TurnsWithoutRecorded: "turns by 90° or more without it, recorded",
+        "dreht sich ohne sie um 90° oder mehr, aufgezeichnet";
+    TurnsWithoutForecast: "turns by 90° or more without it, forecast",
+        "dreht sich ohne sie um 90° oder mehr, vorhergesagt";
+    TurnsWithRecorded: "turns by 90° or more with it, recorded",
+        "dreht sich mit ihr um 90° oder mehr, aufgezeichnet";
+    TurnsWithForecast: "turns by 90° or more with it, forecast",
+        "dreht sich mit ihr um 90° oder mehr, vorhergesagt";
     CaseTimes: "Time of a case", "Rechenzeit eines Falls";
     KnownEvidence: "known", "bekannt", "How much of the evidence was used";
     Method: "method", "Verfahren";
@@ -729,5 +735,19 @@ mod tests {
         let n = english.len();
         english.dedup();
         assert_eq!(english.len(), n);
+    }
+
+    /// “90° or more without” headed a column, and nothing in it turned.
+    #[test]
+    fn an_angle_says_what_turns_by_it() {
+        for language in [Language::En, Language::De] {
+            // It goes on where the one of 90° ends.
+            let terms = Term::ALL.iter().filter(|term| **term != Term::TurnedHalf);
+            let labels = terms.map(|term| term.label(language));
+            for label in labels.filter(|label| label.contains("90°") || label.contains("180°")) {
+                let is_told = ["turn", "dreht", "Drehung"].iter().any(|word| label.contains(word));
+                assert!(is_told, "{label}");
+            }
+        }
     }
 }
