@@ -7,7 +7,7 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::parts::Part;
 use crate::report::{Block, Language, ReportDate, Table};
 use impactlab_core::uncertainty::Caveat;
-use impactlab_core::units::UnitSystem;
+use impactlab_core::units::{Quantity, UnitSystem};
 use impactlab_study::case_file::CaseFile;
 
 /// A question with the variants that have an answer to it.
@@ -29,10 +29,7 @@ pub(super) fn answer_blocks(
     let values = [("case", &*name), ("date", &*date), ("version", version)];
     let mut blocks = Vec::new();
     blocks.push(Block::paragraph(fill(words.intro, &values)));
-    blocks.push(Block::paragraph(match wording.units {
-        UnitSystem::Si => words.units_si,
-        UnitSystem::Us => words.units_us,
-    }));
+    blocks.push(Block::paragraph(units_text(wording)));
     if wording.language != Language::En {
         blocks.push(Block::paragraph(words.language_note));
     }
@@ -182,6 +179,18 @@ fn part_blocks(part: &Part, others: Others<'_>, speaks: bool, wording: &Wording)
     question.iter().cloned().chain(notices).chain(rest).collect()
 }
 
+/// The units of the report, of every quantity that it may tell.
+fn units_text(wording: &Wording) -> String {
+    let symbols = Quantity::ALL.iter().map(|of| of.display_unit(wording.units).symbol);
+    let symbols = symbols.filter(|symbol| !symbol.is_empty());
+    let units: Vec<String> = symbols.map(|symbol| wording.symbol(symbol)).collect();
+    let text = match wording.units {
+        UnitSystem::Si => wording.words.units_si,
+        UnitSystem::Us => wording.words.units_us,
+    };
+    fill(text, &[("units", &units.join(", "))])
+}
+
 /// Blocks in which each table and note stands once: what several answers have in common, such as the two
 /// methods beside each other, is said with the first of them, and so is what stands below such a table.
 fn without_what_was_told(blocks: Vec<Block>, wording: &Wording) -> Vec<Block> {
@@ -208,6 +217,7 @@ fn without_what_was_told(blocks: Vec<Block>, wording: &Wording) -> Vec<Block> {
 mod tests {
     use super::*;
     use crate::report::opinion::{PartOpinion, Rank};
+    use crate::report::{Paper, ReportSettings};
 
     fn forecast(distance: &str, rank: Rank) -> Part {
         let figures = vec![["distance".to_owned(), distance.to_owned()]];
@@ -229,6 +239,24 @@ mod tests {
             answer: vec![Block::paragraph("Where does it go?"), table.clone()],
             in_opinion: vec![table],
             ..Part::default()
+        }
+    }
+
+    /// Inertias in slug ft² and impulses in lbf s stood in a report whose units were “ft, mph, degrees, lbf, ft lbf,
+    /// lb”.
+    #[test]
+    fn every_unit_of_the_report_is_listed() {
+        let date = ReportDate::new(2026, 1, 2).unwrap();
+        for (language, units, listed) in [
+            (Language::En, UnitSystem::Si, ["deg/s", "kg m²", "kN s", "kJ"]),
+            (Language::En, UnitSystem::Us, ["deg/s", "slug ft²", "lbf s", "ft lbf"]),
+            (Language::De, UnitSystem::Us, ["°/s", "slug ft²", "lbf s", "ft lbf"]),
+        ] {
+            let paper = Paper::A4;
+            let told = units_text(&Wording::new(&ReportSettings { language, units, paper, date }));
+            for unit in listed {
+                assert!(told.contains(&format!(" {unit}, ")), "{unit}: {told}");
+            }
         }
     }
 

@@ -14,8 +14,8 @@ pub(super) const WORDS: Words = Words {
     figure: "Bild",
     intro: "Fall „{case}“, {date}. Berechnet mit impactlab {version}. Jede Antwort in diesem Bericht \
         wurde aus dem Fall und den Dateien berechnet, die er nennt.",
-    units_si: "Einheiten: m, km/h, Grad, kN, kJ, kg. Winkel und Gierraten sind nach links positiv.",
-    units_us: "Einheiten: ft, mph, Grad, lbf, ft lbf, lb; Wanksteifigkeit und -dämpfung, Luftwiderstandsflächen und die \
+    units_si: "Einheiten: {units}. Winkel und Gierraten sind nach links positiv.",
+    units_us: "Einheiten: {units}; Wanksteifigkeit und -dämpfung, Rollwiderstand, Luftwiderstandsflächen und die \
         Fehler in Abschnitt 7 in SI-Einheiten. Winkel und Gierraten sind nach links positiv.",
     language_note: "Titel von Veröffentlichungen stehen in Anführungszeichen, wie sie erschienen sind; ebenso Namen \
         aus dem Fall und Fehlermeldungen, die das Programm nur auf Englisch ausgibt.",

@@ -14,8 +14,8 @@ pub(super) const WORDS: Words = Words {
     figure: "Figure",
     intro: "Case “{case}”, {date}. Computed with impactlab {version}. Every answer in this report \
         was computed from the case and the files that it names.",
-    units_si: "Units: m, km/h, degrees, kN, kJ, kg. Angles and yaw rates are positive to the left.",
-    units_us: "Units: ft, mph, degrees, lbf, ft lbf, lb; roll stiffness and damping, drag areas and the errors in section 7 \
+    units_si: "Units: {units}. Angles and yaw rates are positive to the left.",
+    units_us: "Units: {units}; roll stiffness and damping, rolling resistance, drag areas and the errors in section 7 \
         are in SI units. Angles and yaw rates are positive to the left.",
     language_note: "",
     notes: "Notes of the analyst",
