@@ -131,13 +131,19 @@ impl Fields for Rows<'_> {
         let PointsMut { points_m, sigma_m } = points;
         let ends = [points_m.first(), points_m.last()];
         let [Some(first), Some(last)] = ends else { return };
-        let length = |value: f64| self.wording.given(Quantity::Length, value);
-        let point = |[x, y]: &[f64; 2]| format!("({}; {})", length(*x), length(*y));
+        let unit = Quantity::Length.display_unit(self.wording.units);
+        let point = |at_m: &[f64; 2]| {
+            let [x, y] = at_m.map(|si| self.wording.fixed(unit.from_si(si), 2));
+            self.wording.with_unit(&format!("({x}; {y})"), unit.symbol)
+        };
         let values = [
             ("n", points_m.len().to_string()),
             ("first", point(first)),
             ("last", point(last)),
-            ("sigma", length(sigma_m.unwrap_or(sigma.default_at(0.0)))),
+            (
+                "sigma",
+                self.wording.sigma(Quantity::Length, sigma_m.unwrap_or(sigma.default_at(0.0))),
+            ),
         ];
         let values = values.each_ref().map(|(name, value)| (*name, value.as_str()));
         let text = fill(self.wording.words.mark_value, &values);
@@ -278,9 +284,13 @@ mod tests {
     "#;
 
     fn rows(language: Language) -> Vec<InputRow> {
+        rows_in(language, UnitSystem::Si)
+    }
+
+    fn rows_in(language: Language, units: UnitSystem) -> Vec<InputRow> {
         let file = TomlFile { path: Path::new("case.toml"), text: EVIDENCE };
         let date = ReportDate::new(2026, 1, 2).unwrap();
-        let (units, paper) = (UnitSystem::Si, Paper::A4);
+        let paper = Paper::A4;
         let wording = Wording::new(&ReportSettings { language, units, paper, date });
         stated_rows(&Evidence::from_toml(file).unwrap(), &wording)
     }
@@ -336,6 +346,31 @@ mod tests {
             let is_listed =
                 |row: &InputRow| row.group == group && row.label == label && row.value == value;
             assert!(rows.iter().any(is_listed), "{group}: {label} = {value} in {rows:#?}");
+        }
+    }
+
+    /// Of a mark at 512.34 m the place was told to the foot, its error of 0.1 m as 0.3281 ft.
+    #[test]
+    fn points_of_a_mark_have_two_decimals_and_their_error_two_digits() {
+        for (language, units, expected) in [
+            (
+                Language::En,
+                UnitSystem::Si,
+                "2 points from (1.00; 2.00) m to (3.00; 4.00) m, each ± 0.1 m",
+            ),
+            (
+                Language::En,
+                UnitSystem::Us,
+                "2 points from (3.28; 6.56) ft to (9.84; 13.12) ft, each ± 0.33 ft",
+            ),
+            (
+                Language::De,
+                UnitSystem::Us,
+                "2 Punkte von (3,28; 6,56) ft bis (9,84; 13,12) ft, je ± 0,33 ft",
+            ),
+        ] {
+            let rows = rows_in(language, units);
+            assert!(rows.iter().any(|row| row.value == expected), "{expected}: {rows:#?}");
         }
     }
 
