@@ -8,7 +8,10 @@ use egui::{Event, Id, Key, Response, Ui};
 use crate::app::widgets::refusal::refusal_ui;
 use crate::app::widgets::severity_color;
 use impactlab_core::data::Severity;
-use impactlab_core::units::{Quantity, Unit, significant};
+use impactlab_core::units::{Quantity, Unit, is_converted, significant};
+
+/// Most decimals that a field shows.
+const MOST_DECIMALS: usize = 3;
 
 /// A number as a control shows it, in the unit in which it is shown and typed.
 pub(super) struct Number<'a> {
@@ -210,6 +213,17 @@ pub(super) fn number_ui(
     (response, edit)
 }
 
+/// Most decimals that a field shows: those that a number was stated with, but of one that was computed, or
+/// stated in another unit, those of four digits and of the step by which it is dragged.
+pub(super) fn most_decimals(value: f64, speed: f64) -> usize {
+    if !is_converted(value) {
+        return MOST_DECIMALS;
+    }
+    let of_digits = 3 - value.abs().log10().floor() as i32;
+    let of_step = -speed.log10().floor() as i32;
+    of_digits.max(of_step).clamp(0, MOST_DECIMALS as i32) as usize
+}
+
 /// What was typed before and is not possible, unless the number has changed since.
 fn refused_before(ui: &Ui, id: Id, number: &Number<'_>) -> Option<Refused> {
     let refused = ui.data(|data| data.get_temp::<Refused>(id));
@@ -275,4 +289,23 @@ fn goes_on(ui: &Ui) -> bool {
         )
     };
     ui.input(|input| input.events.iter().any(is_begun))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 3400 lb stood as “1542.214 kg” in the form of a car, and a place of 123.45 m as “405.020 ft”.
+    #[test]
+    fn a_number_from_another_unit_has_no_more_digits_than_it_is_worth() {
+        for (value, step, expected) in [
+            (3400.0 * 0.453_592_37, 50.0, 0),
+            (1542.214, 50.0, 3),
+            (123.45 / 0.3048, 0.066, 2),
+            (0.1 / 0.3048, 0.066, 3),
+            (17.0_f64.to_degrees(), 1.1, 1),
+        ] {
+            assert_eq!(most_decimals(value, step), expected, "{value}");
+        }
+    }
 }

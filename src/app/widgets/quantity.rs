@@ -8,7 +8,7 @@ use std::time::Duration;
 use egui::emath::Numeric;
 use egui::{DragValue, Response, Slider, SliderClamping, Ui};
 
-use crate::app::widgets::number::{Edit, Editing, Number, number_ui};
+use crate::app::widgets::number::{Edit, Editing, Number, most_decimals, number_ui};
 use impactlab_core::ranges::Range;
 use impactlab_core::units::{Quantity, Unit, UnitSystem};
 
@@ -80,10 +80,11 @@ fn to_si(number: &Number<'_>, range: &Range, shown: f64) -> f64 {
 
 fn field<'a>(editing: Editing<'a>, speed: f64) -> DragValue<'a> {
     let Editing { value, suffix, parse, format } = editing;
+    let most = most_decimals(*value, speed);
     DragValue::new(value)
         .update_while_editing(false)
         .speed(speed)
-        .max_decimals(3)
+        .max_decimals(most)
         .suffix(suffix)
         .custom_formatter(format)
         .custom_parser(parse)

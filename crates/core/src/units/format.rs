@@ -68,6 +68,9 @@ impl Language {
 /// Digits of a number that was given, at most: more would be those of the conversion of its unit.
 const GIVEN_DIGITS: i32 = 8;
 
+/// Digits that somebody states of a number, at most.
+const STATED_DIGITS: usize = 6;
+
 /// Speed and rate of turning below which something stands still, in the unit of display.
 const STANDSTILL: f64 = 1e-3;
 
@@ -404,6 +407,13 @@ fn in_full(value: f64) -> String {
     let size = value.abs().log10().floor() as i32;
     let decimals = (GIVEN_DIGITS - 1 - size).clamp(0, 12) as usize;
     trimmed(format!("{value:.decimals$}"))
+}
+
+/// Whether a number has more digits than anybody states: it was computed, or converted from another unit.
+pub fn is_converted(value: f64) -> bool {
+    let digits = in_full(value);
+    let significant = digits.trim_start_matches(|c: char| !('1'..='9').contains(&c));
+    significant.chars().filter(char::is_ascii_digit).count() > STATED_DIGITS
 }
 
 /// A number without zeros at the end of its decimals.

@@ -11,7 +11,8 @@ mod typed;
 
 pub use estimate::{Estimate, Interval};
 pub use format::{
-    EstimateText, IntervalText, Language, NumberFormat, percent, significant, trimmed, two_digits,
+    EstimateText, IntervalText, Language, NumberFormat, is_converted, percent, significant,
+    trimmed, two_digits,
 };
 pub use phrase::Phrase;
 pub use phrase_value::{PhraseNumber, PhraseValue, named_unit, three_digits};

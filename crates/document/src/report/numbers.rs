@@ -5,11 +5,10 @@ use std::ops::Deref;
 use crate::report::language::{Words, given_name_of, phrase_of, words_of};
 use crate::report::{Language, ReportDate, ReportSettings};
 use impactlab_core::uncertainty::Caveat;
-use impactlab_core::units::{NumberFormat, Phrase, Quantity, UnitSystem, significant, trimmed};
+use impactlab_core::units::{
+    NumberFormat, Phrase, Quantity, UnitSystem, is_converted, significant, trimmed,
+};
 use impactlab_core::vehicle::BuiltInVehicle;
-
-/// Digits of a number that was given; more are those of a conversion of its unit.
-const MAX_GIVEN_DIGITS: usize = 6;
 
 /// Writes numbers and texts in the language and the units of a report. Numbers are written by the
 /// format of the whole program.
@@ -69,18 +68,16 @@ impl Wording {
     }
 
     fn digits_given(&self, value: f64) -> String {
-        let text = self.format.given_number(value);
-        match n_digits(&text) > MAX_GIVEN_DIGITS {
+        match is_converted(value) {
             true => self.local(&trimmed(significant(value))),
-            false => text,
+            false => self.format.given_number(value),
         }
     }
 
     /// - `outwards`: to the whole number beyond, away from the middle of the range.
     fn digits_outwards(&self, value: f64, outwards: fn(f64) -> f64) -> String {
-        let text = self.format.given_number(value);
-        if n_digits(&text) <= MAX_GIVEN_DIGITS || value == 0.0 || !value.is_finite() {
-            return text;
+        if !is_converted(value) || value == 0.0 || !value.is_finite() {
+            return self.format.given_number(value);
         }
         let step = 10.0_f64.powi(value.abs().log10().floor() as i32 - 3);
         self.local(&trimmed(significant(outwards(value / step) * step)))
@@ -249,13 +246,6 @@ fn without_brackets(text: &str, begin: &str) -> String {
         text = format!("{before}{behind}");
     }
     text
-}
-
-/// Digits of a number from the first that is not zero.
-fn n_digits(number: &str) -> usize {
-    let significant = number.trim_start_matches(|c: char| !('1'..='9').contains(&c));
-    let digits = significant.chars().take_while(|c| c.is_ascii_digit() || matches!(c, '.' | ','));
-    digits.filter(char::is_ascii_digit).count()
 }
 
 /// A template with `{name}` replaced by values.
