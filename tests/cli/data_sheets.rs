@@ -52,6 +52,27 @@ fn the_library_is_listed_printed_and_read_back() {
     );
 }
 
+/// Masses were in kg whatever the units of the reader, and an inertia of about 4200 kg m² had four decimals.
+#[test]
+fn the_list_and_the_estimates_are_in_the_units_of_the_reader() {
+    let list = out(&["vehicles", "--units", "us"]);
+    let of = |id: &str| list.lines().find(|line| line.starts_with(id)).unwrap().to_owned();
+    assert!(list.lines().next().unwrap().contains("mass [lb]"), "{list}");
+    assert!(of("target-2000").contains(" 4409 "), "{list}");
+    assert!(of("target-2000").ends_with("FEA target (4409 lb)"), "{list}");
+    let inertia = |units: &str| {
+        let printed = out(&["vehicles", "ford-explorer-2004", "--estimates", "--units", units]);
+        let line = printed.lines().find(|line| line.starts_with("yaw inertia"));
+        let cells = line.unwrap().split("  ").map(str::trim).filter(|cell| !cell.is_empty());
+        let cells: Vec<&str> = cells.collect();
+        assert!(!cells[1].contains('.'), "{printed}");
+        (cells[0].to_owned(), cells[1].parse::<f64>().unwrap())
+    };
+    let [(si_name, kg_m2), (us_name, slug_ft2)] = ["si", "us"].map(inertia);
+    assert_eq!([si_name.as_str(), &us_name], ["yaw inertia [kg m²]", "yaw inertia [slug ft²]"]);
+    assert!((kg_m2 / slug_ft2 - 1.355_82).abs() < 0.03, "{kg_m2} kg m², {slug_ft2} slug ft²");
+}
+
 #[test]
 fn a_sheet_is_read_wherever_a_vehicle_file_is() {
     let folder = TempDir::new().unwrap();

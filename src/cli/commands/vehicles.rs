@@ -5,6 +5,8 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, print_table};
+use crate::cli::options::{UNITS, one_value_of};
+use impactlab_core::units::{NumberFormat, Quantity, Unit, UnitSystem};
 use impactlab_core::vehicle::sheet::Estimate;
 use impactlab_core::vehicle::{
     BuiltInVehicle, LibraryVehicle, Preset, VehicleClass, VehicleParameters,
@@ -25,13 +27,16 @@ pub(in crate::cli) struct VehiclesArgs {
     /// With ID: what its data sheet does not state, with median, 90 % range, rule and source
     #[arg(long, requires = "id")]
     estimates: bool,
+    /// Units of the list and of --estimates (JSON and vehicle files are always SI)
+    #[arg(long, value_parser = one_value_of(UNITS), default_value = "si")]
+    units: UnitSystem,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   impactlab vehicles
   impactlab vehicles reference-2000 > my-car.toml
-  impactlab vehicles ford-explorer-2004 --estimates
+  impactlab vehicles ford-explorer-2004 --estimates --units us
 
 JSON: {\"vehicles\": [{id, kind, name, class, model_year, source, mass_kg, n_estimates}]}; with ID all parameters, and
   data_sheet_estimates [{quantity, unit, median, intervals, rule, source}]";
@@ -60,8 +65,8 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match &args.id {
-        Some(id) => print_one(id, args.estimates, console)?,
-        None => print_list(console)?,
+        Some(id) => print_one(id, args, console)?,
+        None => print_list(args.units, console)?,
     }
     Ok(Verdict::Clean)
 }
@@ -74,7 +79,7 @@ struct PrintedVehicle<'a> {
     data_sheet_estimates: &'a [Estimate],
 }
 
-fn print_one(id: &str, estimates: bool, console: &mut Console<'_>) -> Result<(), CliError> {
+fn print_one(id: &str, args: &VehiclesArgs, console: &mut Console<'_>) -> Result<(), CliError> {
     let preset = Preset::from_id(id).map(|preset| (preset.parameters(), preset.text()));
     let library = || {
         let vehicle = LibraryVehicle::from_id(id)?;
@@ -88,18 +93,23 @@ fn print_one(id: &str, estimates: bool, console: &mut Console<'_>) -> Result<(),
         let (parameters, data_sheet_estimates) = (&parameters, data_sheet_estimates.as_slice());
         return print_json(console.out, &PrintedVehicle { parameters, data_sheet_estimates });
     }
-    if !estimates {
+    if !args.estimates {
         write!(console.out, "{text}")?;
         return Ok(());
     }
+    let format = NumberFormat::english(args.units);
     let row = |estimate: &Estimate| {
         let Estimate { quantity, unit, value, rule, source } = estimate;
-        let (median, [low, high]) = (value.median, value.ninety());
-        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        let shown = quantity.range().quantity.display_unit(args.units);
+        // Such as deg/g, which is the same in every system.
+        let symbol = if shown.symbol.is_empty() { *unit } else { shown.symbol };
+        let symbol = if symbol.is_empty() { String::new() } else { format!(" [{symbol}]") };
+        // The unit stands with the name.
+        let text = format.estimate_in(Unit { symbol: "", ..shown }, value);
         vec![
-            format!("{}{unit}", quantity.label()),
-            format!("{median:.4}"),
-            format!("{low:.4} to {high:.4}"),
+            format!("{}{symbol}", quantity.label()),
+            text.median.clone(),
+            text.at(0.9).map_or_else(String::new, |interval| interval.range.clone()),
             (*rule).to_owned(),
             (*source).to_owned(),
         ]
@@ -109,7 +119,7 @@ fn print_one(id: &str, estimates: bool, console: &mut Console<'_>) -> Result<(),
     Ok(())
 }
 
-fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
+fn print_list(units: UnitSystem, console: &mut Console<'_>) -> Result<(), CliError> {
     let listed = |of: &BuiltInVehicle| Listed {
         id: of.id,
         kind: if of.is_of_library { "library" } else { "preset" },
@@ -124,22 +134,21 @@ fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
     if console.json {
         return print_json(console.out, &List { vehicles });
     }
+    let (format, mass) = (NumberFormat::english(units), Quantity::Mass.display_unit(units));
     let row = |vehicle: &Listed| {
         vec![
             vehicle.id.to_owned(),
             vehicle.kind.to_owned(),
             vehicle.class.unwrap_or_default().to_owned(),
             vehicle.model_year.map(|year| year.to_string()).unwrap_or_default(),
-            format!("{:.0}", vehicle.mass_kg),
+            format!("{:.0}", mass.from_si(vehicle.mass_kg)),
             vehicle.n_estimates.to_string(),
-            vehicle.name.clone(),
+            BuiltInVehicle::name_in_units(&vehicle.name, &vehicle.name, &format),
         ]
     };
     let rows: Vec<_> = vehicles.iter().map(row).collect();
-    print_table(
-        console.out,
-        &["id", "kind", "class", "year", "mass [kg]", "estimates", "name"],
-        &rows,
-    )?;
+    let mass = format!("mass [{}]", mass.symbol);
+    let columns = ["id", "kind", "class", "year", mass.as_str(), "estimates", "name"];
+    print_table(console.out, &columns, &rows)?;
     Ok(())
 }
