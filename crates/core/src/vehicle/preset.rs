@@ -73,6 +73,40 @@ pub(in crate::vehicle) fn shipped_vehicle(folder: &str, id: &str, text: &str) ->
     }
 }
 
+/// Names of vehicles that come with the program and are no proper names alone, in English and German. `{0}` stands
+/// for the mass.
+const LABELS: &[(&str, &str)] = &[
+    ("Reference car (multibody, {0})", "Referenzfahrzeug (Mehrkörpermodell, {0})"),
+    ("FEA bullet ({0})", "stoßendes Fahrzeug der FE-Rechnungen ({0})"),
+    ("FEA target ({0})", "gestoßenes Fahrzeug der FE-Rechnungen ({0})"),
+    ("Scaled bullet 1:4 ({0})", "stoßendes Modellfahrzeug 1:4 ({0})"),
+    ("Scaled target 1:4 ({0})", "gestoßenes Modellfahrzeug 1:4 ({0})"),
+    ("Ordinary car, no model known", "gewöhnlicher Pkw, Modell unbekannt"),
+    ("Ordinary SUV, no model known", "gewöhnlicher SUV, Modell unbekannt"),
+    ("Ordinary minivan, no model known", "gewöhnlicher Van, Modell unbekannt"),
+    ("Ordinary pickup, no model known", "gewöhnlicher Pick-up, Modell unbekannt"),
+    (
+        "Ford Explorer 2020 (base of the Police Interceptor Utility)",
+        "Ford Explorer 2020 (Grundlage des Police Interceptor Utility)",
+    ),
+    (
+        "Chevrolet Tahoe 2022, RWD (base of the Police Pursuit Vehicle)",
+        "Chevrolet Tahoe 2022, Hinterradantrieb (Grundlage des Police Pursuit Vehicle)",
+    ),
+    (
+        "Chevrolet Tahoe 2022, 4WD (base of the Police Pursuit Vehicle)",
+        "Chevrolet Tahoe 2022, Allradantrieb (Grundlage des Police Pursuit Vehicle)",
+    ),
+    (
+        "Dodge Charger 2022, V8, RWD (base of the Charger Pursuit police car)",
+        "Dodge Charger 2022, V8, Hinterradantrieb (Grundlage des Polizeifahrzeugs Charger Pursuit)",
+    ),
+    (
+        "Ford Crown Victoria 2010 (base of the Police Interceptor)",
+        "Ford Crown Victoria 2010 (Grundlage des Police Interceptor)",
+    ),
+];
+
 /// A vehicle that comes with the program: a preset, or one of the library.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BuiltInVehicle {
@@ -133,11 +167,26 @@ impl BuiltInVehicle {
     /// The same within a phrase.
     pub fn name_in_phrase(name: &str) -> PhraseValue {
         let Some((before, mass_kg)) = Self::mass_in_name(name, name) else {
-            return PhraseValue::Name(name.to_owned());
+            return match Self::german_name(name) {
+                Some(german) => PhraseValue::phrase(Phrase::new(name, german)),
+                None => PhraseValue::Name(name.to_owned()),
+            };
         };
         let text = format!("{before}{{0}})");
-        let phrase = Phrase::new(text.clone(), text);
+        let german = Self::german_name(&text).unwrap_or_else(|| text.clone());
+        let phrase = Phrase::new(text, german);
         PhraseValue::phrase(phrase.with(PhraseValue::given(Quantity::Mass, mass_kg)))
+    }
+
+    /// The German name of a vehicle that comes with the program; `None` of any other one, and of a proper name.
+    pub fn german_name(name: &str) -> Option<String> {
+        LABELS.iter().find_map(|(english, german)| match english.split_once("{0}") {
+            Some((before, behind)) => {
+                let mass = name.strip_prefix(before)?.strip_suffix(behind)?;
+                Some(german.replace("{0}", mass))
+            }
+            None => (*english == name).then(|| (*german).to_owned()),
+        })
     }
 
     /// What stands before the mass at the end of the name of a vehicle that comes with the program, and that, kg.
@@ -157,6 +206,7 @@ pub fn built_in_vehicle(id: &str) -> Option<VehicleParameters> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::Language;
 
     /// The masses at the end of the presets' ids are no years.
     #[test]
@@ -174,6 +224,31 @@ mod tests {
             assert_eq!(vehicle.model_year().is_none(), is_generic, "{}", vehicle.id);
             let year = vehicle.model_year().map(|year| year.to_string()).unwrap_or_default();
             assert!(vehicle.parameters.name.contains(&year), "{}", vehicle.id);
+        }
+    }
+
+    /// “Reference car (multibody, 2000 kg)” stood among the restrictions of a German report.
+    #[test]
+    fn names_that_are_labels_are_german_in_phrases_and_proper_names_stay() {
+        let said = |language, units, name: &str| {
+            let phrase = Phrase::of(BuiltInVehicle::name_in_phrase(name));
+            phrase.say(&NumberFormat { units, language })
+        };
+        for (name, german) in [
+            ("Reference car (multibody, 2000 kg)", "Referenzfahrzeug (Mehrkörpermodell, 2000 kg)"),
+            ("Scaled bullet 1:4 (290 kg)", "stoßendes Modellfahrzeug 1:4 (290 kg)"),
+            ("Ordinary car, no model known", "gewöhnlicher Pkw, Modell unbekannt"),
+            ("Toyota Camry 2018", "Toyota Camry 2018"),
+            ("our van {0} (2000 kg)", "our van {0} (2000 kg)"),
+        ] {
+            assert_eq!(said(Language::De, UnitSystem::Si, name), german);
+            assert_eq!(said(Language::En, UnitSystem::Si, name), name);
+        }
+        let us = said(Language::De, UnitSystem::Us, "FEA target (2000 kg)");
+        assert_eq!(us, "gestoßenes Fahrzeug der FE-Rechnungen (4409 lb)");
+        for preset in Preset::ALL {
+            let name = preset.parameters().name;
+            assert!(BuiltInVehicle::german_name(&name).is_some(), "{name}");
         }
     }
 

@@ -9,31 +9,6 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("tracks", "Spurweiten"),
     ("CG", "Schwerpunkt"),
     ("kerb weight", "Leergewicht"),
-    // Names of the vehicles that come with the program.
-    ("Ordinary car, no model known", "gewöhnlicher Pkw, Modell unbekannt"),
-    ("Ordinary SUV, no model known", "gewöhnlicher SUV, Modell unbekannt"),
-    ("Ordinary minivan, no model known", "gewöhnlicher Van, Modell unbekannt"),
-    ("Ordinary pickup, no model known", "gewöhnlicher Pick-up, Modell unbekannt"),
-    (
-        "Ford Explorer 2020 (base of the Police Interceptor Utility)",
-        "Ford Explorer 2020 (Grundlage des Police Interceptor Utility)",
-    ),
-    (
-        "Chevrolet Tahoe 2022, RWD (base of the Police Pursuit Vehicle)",
-        "Chevrolet Tahoe 2022, Hinterradantrieb (Grundlage des Police Pursuit Vehicle)",
-    ),
-    (
-        "Chevrolet Tahoe 2022, 4WD (base of the Police Pursuit Vehicle)",
-        "Chevrolet Tahoe 2022, Allradantrieb (Grundlage des Police Pursuit Vehicle)",
-    ),
-    (
-        "Dodge Charger 2022, V8, RWD (base of the Charger Pursuit police car)",
-        "Dodge Charger 2022, V8, Hinterradantrieb (Grundlage des Polizeifahrzeugs Charger Pursuit)",
-    ),
-    (
-        "Ford Crown Victoria 2010 (base of the Police Interceptor)",
-        "Ford Crown Victoria 2010 (Grundlage des Police Interceptor)",
-    ),
     // Rules of the vehicles of the data sets.
     ("as the reference car", "wie beim Referenzfahrzeug"),
     ("as the finite-element target", "wie beim gestoßenen Fahrzeug der Finite-Elemente-Rechnungen"),
@@ -243,12 +218,6 @@ pub(super) const TEMPLATES: &[(&str, &str)] = &[
         "Y. Jiang, J. Wang, D. Li, tables of the scaled vehicles: mass {}, {}",
         "Y. Jiang, J. Wang, D. Li, Tabellen der Modellfahrzeuge: Masse {}, {}",
     ),
-    // Names of the vehicles that come with the program.
-    ("Reference car (multibody, {})", "Referenzfahrzeug (Mehrkörpermodell, {})"),
-    ("FEA bullet ({})", "stoßendes Fahrzeug der FE-Rechnungen ({})"),
-    ("FEA target ({})", "gestoßenes Fahrzeug der FE-Rechnungen ({})"),
-    ("Scaled bullet {}", "stoßendes Modellfahrzeug {}"),
-    ("Scaled target {}", "gestoßenes Modellfahrzeug {}"),
     // Where a case lies outside of the atlas.
     ("{}: {}, the map has {} to {}", "{}: {}, der Atlas reicht von {} bis {}"),
     // Rules of the vehicles of the data sets.

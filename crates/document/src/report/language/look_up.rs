@@ -4,6 +4,7 @@ use crate::report::Language;
 use crate::report::language::words::Words;
 use crate::report::language::{de, de_sources, de_terms, de_training, en};
 use impactlab_core::uncertainty::{CaveatKind, CaveatSubject};
+use impactlab_core::vehicle::BuiltInVehicle;
 
 /// The texts of the report itself.
 pub(in crate::report) fn words_of(language: Language) -> &'static Words {
@@ -23,6 +24,9 @@ pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<Str
     }
     if let Some(label) = caveat_label(language, text) {
         return Some(label.to_owned());
+    }
+    if let Some(name) = BuiltInVehicle::german_name(text) {
+        return Some(name);
     }
     let filled = templates().find_map(|(english, german)| {
         let rests = rests(english, text)?.into_iter().map(|rest| rest_of(language, rest));
@@ -117,8 +121,8 @@ mod tests {
     use crate::figure::{BRAKES_ALONE, ReplayCurve, WheelInput};
     use crate::report::keys::bare;
     use impactlab_core::collision::{SCENARIO_PRESETS, Scenario};
+    use impactlab_core::vehicle::built_in_vehicle;
     use impactlab_core::vehicle::sheet::{DataSheet, SheetQuantity, VehicleClass};
-    use impactlab_core::vehicle::{BuiltInVehicle, built_in_vehicle};
     use impactlab_reconstruct::hand::HandMethod;
     use impactlab_reconstruct::{Latent, ReconstructedQuantity};
     use impactlab_study::case_file::CaseFile;
