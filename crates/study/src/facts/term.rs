@@ -658,7 +658,7 @@ terms! {
     HandEquation: "equation", "Gleichung";
     HandHolds: "holds if", "gilt, wenn";
     // The replay of a recorder.
-    RecorderAtContact: "The car at the first contact", "Der Wagen beim ersten Kontakt";
+    RecorderAtContact: "The car at the first contact", "Das Fahrzeug beim ersten Kontakt";
     RecorderSpeed: "speed at the first contact", "Geschwindigkeit beim ersten Kontakt";
     RecorderSideslip: "sideslip at the first contact", "Schwimmwinkel beim ersten Kontakt",
         "From the heading to the velocity of the CG, positive to the left";
@@ -670,10 +670,10 @@ terms! {
     RecorderTurn: "turn to the left", "Drehung nach links";
     RecorderLength: "way along the path", "Weg entlang der Bahn";
     RecorderFrictionUse: "share of the friction that is used at most", "höchste Nutzung der Reibung";
-    RecorderStart: "Where it was at the first sample", "Wo er beim ersten Abtastwert war";
+    RecorderStart: "Where it was at the first sample", "Wo es beim ersten Abtastwert war";
     RecorderStartX: "X of the first sample", "X des ersten Abtastwerts";
     RecorderStartY: "Y of the first sample", "Y des ersten Abtastwerts";
-    RecorderStartHeading: "heading of the first sample", "Richtung beim ersten Abtastwert";
+    RecorderStartHeading: "heading of the first sample", "Gierwinkel beim ersten Abtastwert";
     RecorderSamples: "Recorded samples beside the computed motion",
         "Aufgezeichnete Werte neben der berechneten Bewegung";
     RecorderTime: "time on the recorder's clock", "Zeit auf der Uhr des Datenspeichers";
@@ -735,6 +735,14 @@ mod tests {
         let n = english.len();
         english.dedup();
         assert_eq!(english.len(), n);
+    }
+
+    /// One car was “der Wagen” in the tables of a recorder, and “das Fahrzeug” elsewhere; draws were also “Züge”.
+    #[test]
+    fn one_thing_has_one_german_word() {
+        for label in Term::ALL.iter().map(|term| term.label(Language::De)) {
+            assert!(!label.contains("Wagen") && !label.contains("Züge"), "{label}");
+        }
     }
 
     /// “90° or more without” headed a column, and nothing in it turned.

@@ -350,7 +350,7 @@ pub(super) const WORDS: Words = Words {
         Spuren passen, mit der Standardabweichung jeder Messung und einem Modellfehler, der \
         längs der Bahn wächst. Ein sequentielles Monte-Carlo-Verfahren zieht aus der \
         Vorabverteilung, dann aus Mischungen von Normalverteilungen, die den Spuren schrittweise \
-        folgen, und gewichtet jeden Zug nach der Dichte, aus der er stammt; der Standardfehler der \
+        folgen, und gewichtet jede Ziehung nach der Dichte, aus der sie stammt; der Standardfehler der \
         Wahrscheinlichkeiten folgt aus den Gewichten, die Anpassung jeder Spur aus realisierten \
         Abweichungen.",
     limits_reconstruction: "Stoß nach der Impulslösung mit Stoßziffer und Reibung, Bewegung nach dem 4DOF-Modell; \
@@ -362,7 +362,7 @@ pub(super) const WORDS: Words = Words {
         Anfang bis zum Stillstand berechnet und danach gewichtet, wie gut sie zu den Spuren passt, mit der \
         Standardabweichung jeder Messung und einem Modellfehler, der längs der Bahn wächst. Ein sequentielles \
         Monte-Carlo-Verfahren zieht aus der Vorabverteilung, dann aus Mischungen von Normalverteilungen, die den \
-        Spuren schrittweise folgen, und gewichtet jeden Zug nach der Dichte, aus der er stammt.",
+        Spuren schrittweise folgen, und gewichtet jede Ziehung nach der Dichte, aus der sie stammt.",
     limits_single_car: "Bewegung nach dem 4DOF-Modell mit Vorderrädern, die mit einem Winkel gehalten werden; die \
         Netze sind nicht beteiligt. Ein Fahrer, der hin und her lenkt oder die Bremse löst, bleibt außer \
         Betracht. Ein Antiblockiersystem hält den Schlupf nahe der größten Reibung und hinterlässt keine Spuren. Eine \

@@ -162,8 +162,8 @@ fn wheel_speed(record: &Record, limit_m_s2: f64) -> Vec<Caveat> {
             "between {0} and {1} the recorded speed grows by {2}, and all wheels together hold {3}: driven wheels \
              spun, or the car was faster again after locked wheels; the speed over ground may be lower or higher",
             "Zwischen {0} und {1} wächst die aufgezeichnete Geschwindigkeit mit {2}, alle Räder zusammen halten \
-             {3}: angetriebene Räder haben durchgedreht, oder der Wagen lief nach blockierten Rädern wieder \
-             schneller; die Geschwindigkeit über Grund kann kleiner oder größer sein",
+             {3}: angetriebene Räder haben durchgedreht, oder Räder liefen nach einem Blockieren \
+             wieder an; die Geschwindigkeit über Grund kann kleiner oder größer sein",
         );
         doubtful(text, &change, limit_m_s2)
     });
@@ -174,9 +174,9 @@ fn wheel_speed(record: &Record, limit_m_s2: f64) -> Vec<Caveat> {
             "the car was braked hard or its anti-lock system was at work: braked wheels slip, so that the recorded \
              speed is below that over ground, in tests under full braking by 8 to 18 %; the intervals are not \
              corrected for it: the car may have been faster than they say",
-            "Der Wagen wurde stark gebremst, oder sein ABS griff ein: gebremste Räder haben Schlupf, die \
+            "Das Fahrzeug wurde stark gebremst, oder sein ABS griff ein: gebremste Räder haben Schlupf, die \
              aufgezeichnete Geschwindigkeit liegt daher unter der über Grund, in Versuchen bei Vollbremsung um 8 \
-             bis 18 %; die Bereiche sind darum nicht berichtigt, der Wagen kann schneller gewesen sein, als sie \
+             bis 18 %; die Bereiche sind nicht um diesen Schlupf berichtigt, das Fahrzeug kann schneller gewesen sein, als sie \
              angeben",
         );
         Caveat::new(CaveatKind::DoubtfulData, text)
@@ -208,7 +208,7 @@ fn not_followed(report: &ReplayReport) -> Option<Caveat> {
         "the motion does not keep the recorded speed: {0} before the recorder's time 0 it has {1} along the car, the \
          record {2}",
         "Die Bewegung hält die aufgezeichnete Geschwindigkeit nicht: {0} vor der Zeit 0 des Datenspeichers hat sie \
-         {1} entlang des Wagens, die Aufzeichnung {2}",
+         {1} in Fahrzeuglängsrichtung, die Aufzeichnung {2}",
     )
     .with(PhraseValue::fixed(Quantity::Time, 0.0 - worst.recorder_time_s, 2))
     .with(speed(worst.vx_body_m_s.median))
@@ -232,8 +232,8 @@ fn lateral(record: &Record, report: &ReplayReport, limit_m_s2: f64) -> Vec<Cavea
             "recorded speed times recorded yaw rate is a lateral acceleration of {0}, and the road holds {1}: the \
              car spun or slid, or the friction is higher; a car that slides does not go where it steers",
             "Aufgezeichnete Geschwindigkeit mal aufgezeichnete Gierrate ist eine Querbeschleunigung von {0}, die \
-             Straße hält {1}: der Wagen drehte sich oder rutschte, oder der Reibbeiwert ist höher; ein \
-             rutschender Wagen fährt nicht, wohin er lenkt",
+             Straße hält {1}: das Fahrzeug drehte sich oder rutschte, oder der Reibbeiwert ist höher; ein \
+             rutschendes Fahrzeug fährt nicht, wohin es lenkt",
         );
         let text = text.with(acceleration(recorded_m_s2)).with(acceleration(limit_m_s2));
         Caveat::new(CaveatKind::OutsideDomain, text)
@@ -269,13 +269,13 @@ fn disagreement(check: Option<&YawRateCheck>) -> Option<Caveat> {
             "with a steering ratio of {0} they would be the same where tires are not near their limit, else the \
              car slid, or the recorded speed is not that over ground",
             "mit einer Lenkübersetzung von {0} wären sie gleich, wo die Reifen nicht nah an ihrer Grenze sind, \
-             sonst rutschte der Wagen, oder die aufgezeichnete Geschwindigkeit ist nicht die über Grund",
+             sonst rutschte das Fahrzeug, oder die aufgezeichnete Geschwindigkeit ist nicht die über Grund",
         )
         .with(PhraseValue::estimate(Quantity::Ratio, ratio)),
         (false, None) => Phrase::new(
             "the car slid, its speed over ground is not the recorded one, or steering or yaw rate are not those \
              of this motion",
-            "der Wagen rutschte, seine Geschwindigkeit über Grund ist nicht die aufgezeichnete, oder Lenkung oder \
+            "das Fahrzeug rutschte, seine Geschwindigkeit über Grund ist nicht die aufgezeichnete, oder Lenkung oder \
              Gierrate gehören nicht zu dieser Bewegung",
         ),
     };
@@ -311,7 +311,7 @@ fn after_last_sample(record: &Record, report: &ReplayReport, limit_m_s2: f64) ->
         false => Phrase::new(
             "the contact is taken to be up to {0} after the last sample, at which the car was not braked: a full \
              braking or steering that began after it is not in the interval and would take up to {1}",
-            "Der Kontakt liegt bis zu {0} nach dem letzten Abtastwert, bei dem der Wagen nicht gebremst war: eine \
+            "Der Kontakt liegt bis zu {0} nach dem letzten Abtastwert, bei dem das Fahrzeug nicht gebremst war: eine \
              danach begonnene Vollbremsung oder ein Lenken ist nicht im Bereich und nähme bis zu {1}",
         ),
     };
@@ -346,7 +346,7 @@ fn other_ratio(report: &ReplayReport) -> Option<Caveat> {
     let [low, high] = implied.ninety();
     let text = Phrase::new(
         "the recorded yaw rate goes with a steering ratio of {0} rather than with {1}: look it up for this car",
-        "Die aufgezeichnete Gierrate passt eher zu einer Lenkübersetzung von {0} als zu {1}: für diesen Wagen \
+        "Die aufgezeichnete Gierrate passt eher zu einer Lenkübersetzung von {0} als zu {1}: für dieses Fahrzeug \
          nachsehen",
     )
     .with(PhraseValue::estimate(Quantity::Ratio, implied))
@@ -369,7 +369,7 @@ fn notes(report: &ReplayReport, vehicle: &VehicleParameters) -> Vec<Caveat> {
     );
     let steady = note(
         "before the first sample the car is taken to turn steadily with its speed and steering, on a level road",
-        "Vor dem ersten Abtastwert fährt der Wagen stationär mit dessen Geschwindigkeit und Lenkwinkel, auf ebener \
+        "Vor dem ersten Abtastwert fährt das Fahrzeug stationär mit dessen Geschwindigkeit und Lenkwinkel, auf ebener \
          Straße",
     );
     let unchecked = report.yaw_rate.is_none().then(|| {
