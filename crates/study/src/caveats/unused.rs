@@ -103,7 +103,7 @@ pub(crate) fn drivers_by_network(struck: &StruckVehicle) -> Option<Caveat> {
             Phrase::new(
                 "stability control and anti-lock system act in the forecast as in the motion of the 4DOF \
                  model under the same force; they do not react to what the network adds to it",
-                "Stabilitätsregelung und Blockierverhinderer wirken in der Vorhersage wie in der Bewegung \
+                "Fahrdynamikregelung (ESC) und Antiblockiersystem wirken in der Vorhersage wie in der Bewegung \
                  des 4DOF-Modells unter derselben Kraft; auf das, was das Netz hinzufügt, reagieren sie nicht",
             ),
         )

@@ -554,7 +554,7 @@ terms! {
         "Share of the cases in which the region of 50 % held the position at the end of the record";
     EndIn90: "end in 90 %", "Ende in 90 %", "The same of the region of 90 %";
     StabilityTwins: "Stability control: the same collisions with and without it",
-        "Fahrdynamikregelung: dieselben Kollisionen mit und ohne sie";
+        "Fahrdynamikregelung (ESC): dieselben Kollisionen mit und ohne sie";
     RecordedTurnWithout: "turn without, recorded", "Drehung ohne, aufgezeichnet",
         "Largest turn of the struck vehicle without stability control";
     ForecastTurnWithout: "turn without, median", "Drehung ohne, Median";
@@ -570,7 +570,7 @@ terms! {
     SavedForecast: "effect, forecast", "Wirkung, vorhergesagt";
     Saved: "saved", "gerettet";
     NotSaved: "not saved", "nicht gerettet";
-    EffectOfStabilityControl: "Effect of stability control", "Wirkung der Fahrdynamikregelung";
+    EffectOfStabilityControl: "Effect of stability control", "Wirkung der Fahrdynamikregelung (ESC)";
     EffectRight: "effect forecast as recorded", "Wirkung wie aufgezeichnet vorhergesagt";
     SavedAndForecast: "saved, and forecast to be", "gerettet und so vorhergesagt";
     SavedNotForecast: "saved, but not forecast to be", "gerettet, aber nicht so vorhergesagt";

@@ -84,7 +84,7 @@ impl ClosedLoop {
     pub fn distributions(&self) -> Vec<Phrase> {
         let all = [
             (
-                Phrase::new("stability control", "Stabilitätsregelung"),
+                Phrase::new("stability control", "Fahrdynamikregelung (ESC)"),
                 self.esc.as_ref().map(StabilityControl::distributions),
             ),
             (

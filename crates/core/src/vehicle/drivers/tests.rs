@@ -362,7 +362,7 @@ fn what_is_stated_of_a_driver_is_not_drawn() {
     let words = drawn.say(&NumberFormat { units: UnitSystem::Si, language: Language::De });
     for (of_what, is_drawn) in [
         ("Schwelle", false),
-        ("Stabilitätsregelung: ", true),
+        ("Fahrdynamikregelung (ESC): ", true),
         ("Totzeit 0,1 bis 0,2 s", true),
         ("innerhalb von 0,2 bis 0,5 s", true),
     ] {

@@ -316,6 +316,16 @@ mod tests {
         }
     }
 
+    /// Stability control was ESP, ESC, “Stabilitätsprogramm” and “Stabilitätsregelung” in one report.
+    #[test]
+    fn stability_control_has_one_german_name() {
+        for (english, german) in terms() {
+            let is_named = ["ESC", "tability control"].iter().any(|word| english.contains(word));
+            let is_esc = is_named || *english == "esc";
+            assert!(!is_esc || german.contains("ESC"), "{english}: {german}");
+        }
+    }
+
     #[test]
     fn no_label_is_translated_twice() {
         let all: Vec<&str> = terms().map(|(english, _)| *english).collect();
