@@ -326,6 +326,14 @@ mod tests {
         }
     }
 
+    /// A lane was “Spur”, which is a tire mark in the same report.
+    #[test]
+    fn a_lane_is_no_mark_in_german() {
+        for (english, german) in terms().filter(|(english, _)| english.contains("lane")) {
+            assert!(!german.contains("Spur") && !german.contains("spur"), "{english}: {german}");
+        }
+    }
+
     #[test]
     fn no_label_is_translated_twice() {
         let all: Vec<&str> = terms().map(|(english, _)| *english).collect();
