@@ -44,7 +44,7 @@ terms! {
     StrikingVehicle: "striking vehicle", "stoßendes Fahrzeug";
     // The answer to a forecast.
     TheAnswer: "The answer", "Die Antwort";
-    WillItSpin: "Will it spin?", "Schleudert es herum?";
+    WillItSpin: "Will it spin?", "Gerät es ins Schleudern?";
     TurnedQuarter: "turned by 90° or more at the end with", "am Ende um 90° oder mehr gedreht mit";
     TurnedHalf: "by 180° or more with", "um 180° oder mehr mit";
     WhereDoesItStop: "Where does it stop?", "Wo kommt es zum Stillstand?";
@@ -642,7 +642,7 @@ terms! {
         "bei den Werten der Eingaben, ± in erster Ordnung", "± is one standard deviation";
     HandAvoided: "stops before the place of the collision with", "steht vor der Unfallstelle mit";
     HandInputs: "Inputs of the calculation by hand", "Eingaben der Rechnung von Hand";
-    HandSource: "whose it is", "Herkunft";
+    HandSource: "stated or assumed", "angegeben oder angenommen";
     HandSigmaAssumed: "value stated, ± assumed", "Wert angegeben, ± angenommen";
     HandSensitivities: "What one standard deviation more of an input, or 1 % of an exact one, changes",
         "Was eine Standardabweichung mehr einer Eingabe oder 1 % einer genauen ändert";
@@ -650,7 +650,7 @@ terms! {
         "Dieselbe Formel auf Spuren des 4DOF-Modells, deren Geschwindigkeit bekannt ist";
     HandBiasTruth: "true speed at the start of the mark", "wahre Geschwindigkeit am Beginn der Spur";
     HandBiasSteer: "angle of the front wheels", "Winkel der Vorderräder";
-    HandBiasRadius: "radius of its begin", "Radius ihres Beginns";
+    HandBiasRadius: "radius at its beginning", "Radius an ihrem Beginn";
     HandBiasSpeed: "speed by the mark", "Geschwindigkeit nach der Spur";
     HandBiasRatio: "of the true speed", "der wahren Geschwindigkeit";
     HandBiasMean: "mean, and from smallest to largest", "Mittel, und vom kleinsten zum größten";

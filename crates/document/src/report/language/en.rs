@@ -231,7 +231,7 @@ pub(super) const WORDS: Words = Words {
     restriction: "Restriction",
     sentence: "What it says",
     remedy: "Remedy",
-    holds_for: "Of",
+    holds_for: "Applies to",
     no_badges: "The program found nothing that restricts the answers.",
     warning: "warning",
     note: "note",
