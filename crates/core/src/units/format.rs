@@ -153,10 +153,16 @@ impl NumberFormat {
         self.local(&in_full(value))
     }
 
-    /// The same with its unit.
+    /// The same with its unit. In another unit than that of SI it has four digits if it has more than
+    /// anybody states there: 30 m are 98.43 ft.
     pub fn given(&self, quantity: Quantity, value_si: f64) -> String {
         let unit = quantity.display_unit(self.units);
-        self.with_unit(&in_full(unit.from_si(value_si)), unit.symbol)
+        let value = unit.from_si(value_si);
+        let number = match unit != quantity.si_unit() && is_converted(value) {
+            true => trimmed(significant(value)),
+            false => in_full(value),
+        };
+        self.with_unit(&number, unit.symbol)
     }
 
     /// A number of a rule or an assumption, rounded as on the screen, without zeros at its end.

@@ -101,6 +101,9 @@ fn what_was_given_keeps_its_digits() {
     assert_eq!(EN.given(Quantity::Mass, 1999.4567), "1999.4567 kg");
     assert_eq!(EN.given(Quantity::Length, -1.234567), "-1.234567 m");
     assert_eq!(EN.given(Quantity::Speed, 15.0), "54 km/h");
+    // A distance of 30 m was 98.425197 ft.
+    assert_eq!(DE_US.given(Quantity::Length, 30.0), "98,43 ft");
+    assert_eq!(DE_US.given(Quantity::Length, 30.48), "100 ft");
     assert_eq!(EN.given_number(0.1 + 0.2), "0.3");
     assert_eq!(EN.given_number(0.0), "0");
     assert_eq!([-0.02, -0.06, 0.0].map(|value| EN.fixed(value, 1)), ["0.0", "-0.1", "0.0"]);
