@@ -153,14 +153,22 @@ impl NumberFormat {
         self.local(&in_full(value))
     }
 
-    /// The same with its unit. In another unit than that of SI it has four digits if it has more than
-    /// anybody states there: 30 m are 98.43 ft.
+    /// A number that was stated, with its digits; with four where it has more than anybody states.
+    pub fn stated_number(&self, value: f64) -> String {
+        match is_converted(value) {
+            true => self.local(&trimmed(significant(value))),
+            false => self.given_number(value),
+        }
+    }
+
+    /// A number that was given, with its unit: as [`NumberFormat::given_number`] in that of SI, and as
+    /// [`NumberFormat::stated_number`] in another one, so that 30 m are 98.43 ft.
     pub fn given(&self, quantity: Quantity, value_si: f64) -> String {
         let unit = quantity.display_unit(self.units);
         let value = unit.from_si(value_si);
-        let number = match unit != quantity.si_unit() && is_converted(value) {
-            true => trimmed(significant(value)),
-            false => in_full(value),
+        let number = match unit == quantity.si_unit() {
+            true => in_full(value),
+            false => self.stated_number(value),
         };
         self.with_unit(&number, unit.symbol)
     }

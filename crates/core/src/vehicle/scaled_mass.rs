@@ -1,5 +1,6 @@
 //! A vehicle with another mass than its file says, and what is noted of that.
 
+use crate::units::NumberFormat;
 use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::{DataSheet, MassParameters, VehicleParameters};
 
@@ -53,10 +54,9 @@ impl VehicleParameters {
         let text = format!("said with the collision, instead of {} kg", before.mass_kg);
         self.stated.insert(MASS_KEY.to_owned(), text);
         self.estimates.remove(MASS_KEY);
-        let rule = format!(
-            "scaled in proportion to the mass, from {} to {} kg",
-            before.mass_kg, self.mass.mass_kg
-        );
+        let masses = [before.mass_kg, self.mass.mass_kg];
+        let [from, to] = masses.map(|kg| NumberFormat::default().stated_number(kg));
+        let rule = format!("scaled in proportion to the mass, from {from} to {to} kg");
         for key in SCALED_KEYS.into_iter().chain(is_scaled.then_some(YAW_INERTIA_KEY)) {
             let own = self.estimates.entry(key.to_owned()).or_default();
             *own = if own.is_empty() { rule.clone() } else { format!("{own}; {rule}") };
@@ -121,6 +121,10 @@ mod tests {
                 "{rule}"
             );
         }
+        // A mass that was stated in pounds had thirteen digits.
+        let of_pounds = car().with_mass(3400.0 * 0.453_592_37, None);
+        let rule = &of_pounds.estimates[YAW_INERTIA_KEY];
+        assert!(rule.ends_with("from 2000 to 1542 kg"), "{rule}");
         let other = car().with_mass(1500.0, Some(2500.0));
         assert!(other.stated.contains_key(YAW_INERTIA_KEY), "{:?}", other.stated);
         assert!(!other.estimates.contains_key(YAW_INERTIA_KEY));

@@ -50,12 +50,12 @@ impl Wording {
     /// result of a conversion and has those that are shown of a result.
     pub fn given(&self, quantity: Quantity, value_si: f64) -> String {
         let unit = quantity.display_unit(self.units);
-        self.with_unit(&self.digits_given(unit.from_si(value_si)), unit.symbol)
+        self.with_unit(&self.stated_number(unit.from_si(value_si)), unit.symbol)
     }
 
     /// The same of a pure number.
     pub fn given_number(&self, value: f64) -> String {
-        self.digits_given(value)
+        self.stated_number(value)
     }
 
     /// From one number that was given to another. Where digits are cut off, the range gets wider.
@@ -65,13 +65,6 @@ impl Wording {
         let low = self.with_unit(&self.digits_outwards(low, f64::floor), unit.symbol);
         let high = self.with_unit(&self.digits_outwards(high, f64::ceil), unit.symbol);
         format!("{low} {} {high}", self.words.to)
-    }
-
-    fn digits_given(&self, value: f64) -> String {
-        match is_converted(value) {
-            true => self.local(&trimmed(significant(value))),
-            false => self.format.given_number(value),
-        }
     }
 
     /// - `outwards`: to the whole number beyond, away from the middle of the range.
@@ -131,13 +124,22 @@ impl Wording {
     /// A note, a rule or a source of the program in the language and the units of the report, part by part;
     /// as [`Wording::quoted`] where a part has no translation.
     pub fn note(&self, text: &str) -> String {
-        let said = text.split("; ").map(|part| {
-            let before = part.strip_prefix(SAID_INSTEAD);
-            let before = before.and_then(|value| self.in_units(value));
-            before.map_or_else(|| part.to_owned(), |value| format!("{SAID_INSTEAD}{value}"))
-        });
+        let said = text.split("; ").map(|part| self.part_in_units(part));
         let parts: Option<Vec<String>> = said.map(|part| phrase_of(self.language, &part)).collect();
         parts.map_or_else(|| self.quoted(text), |parts| self.local(&parts.join("; ")))
+    }
+
+    /// A part of a note with what a collision replaces in the units of the report.
+    fn part_in_units(&self, part: &str) -> String {
+        let before = part.strip_prefix(SAID_INSTEAD).and_then(|value| self.in_units(value));
+        if let Some(value) = before {
+            return format!("{SAID_INSTEAD}{value}");
+        }
+        let masses = part.strip_prefix(SCALED).and_then(|masses| masses.split_once(" to "));
+        let masses = masses.and_then(|(from, to)| {
+            Some([self.in_units(&format!("{from} kg"))?, self.in_units(to)?])
+        });
+        masses.map_or_else(|| part.to_owned(), |[from, to]| format!("{SCALED}{from} to {to}"))
     }
 
     /// Remarks of a person, which stay as they are, but for those that the window writes of a cell of the atlas.
@@ -213,6 +215,9 @@ const LIMITS_FILE: &str = "docs/guide/limits.md";
 
 /// How the note of a value begins that a collision states in place of that of the vehicle.
 const SAID_INSTEAD: &str = "said with the collision, instead of ";
+
+/// How the rule of a value begins that follows the mass of a collision.
+const SCALED: &str = "scaled in proportion to the mass, from ";
 
 /// Words of what names nothing but an option or a key of a file, such as “another one: --vehicle”.
 const WORDS_OF_OPTION: usize = 3;
@@ -324,6 +329,14 @@ mod tests {
         let german = Wording { format, words: words_of(Language::De) };
         let told = german.note("said with the collision, instead of 2.0468 m");
         assert_eq!(told, "mit der Kollision angegeben, statt 2,0468 m");
+        // A rule was in kg in a report in pounds, with all digits of 3400 lb.
+        let rule = "scaled in proportion to the mass, from 2000 to 1542 kg";
+        let told = Wording::english(UnitSystem::Us).note(rule);
+        assert_eq!(told, "scaled in proportion to the mass, from 4409 lb to 3400 lb");
+        assert_eq!(
+            german.note(rule),
+            "im Verhältnis der Masse umgerechnet, von 2000 kg auf 1542 kg"
+        );
     }
 
     /// A car of “2000 kg” stood beside masses in pounds. What somebody calls a car is theirs.

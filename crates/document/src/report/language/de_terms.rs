@@ -912,8 +912,8 @@ pub(super) const TEMPLATES: &[(&str, &str)] = &[
     ("density of the CG, {}", "Dichte des Schwerpunkts, {}"),
     ("said with the collision, instead of {}", "mit der Kollision angegeben, statt {}"),
     (
-        "scaled in proportion to the mass, from {} to {} kg",
-        "im Verhältnis der Masse umgerechnet, von {} auf {} kg",
+        "scaled in proportion to the mass, from {} to {}",
+        "im Verhältnis der Masse umgerechnet, von {} auf {}",
     ),
     (
         "force: {} that carries the impulse of the momentum solution",
