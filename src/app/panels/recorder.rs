@@ -8,7 +8,7 @@ use crate::app::recorder::{RecorderCommand, RecorderForm, title};
 use crate::app::widgets::{choice_row, notice_ui, value_row};
 use impactlab_core::collision::Role;
 use impactlab_core::data::{RecordedDeltaV, RecordedSpeed, RecorderRecord, Severity};
-use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::units::{NumberFormat, Quantity, UnitSystem};
 
 /// Width of the form, points.
 const WIDTH: f32 = 640.0;
@@ -84,8 +84,10 @@ fn choices_ui(ui: &mut Ui, form: &mut RecorderForm) {
 
 /// What was recorded, by its names.
 fn recorded(record: &RecorderRecord, units: UnitSystem) -> Vec<(&'static str, String)> {
+    let time = |time_s| NumberFormat::english(units).given(Quantity::Time, time_s);
     let delta_v = |delta_v: RecordedDeltaV| {
-        let until = delta_v.ends_s.map_or_else(String::new, |ends_s| format!(" up to {ends_s} s"));
+        let until =
+            delta_v.ends_s.map_or_else(String::new, |ends_s| format!(" up to {}", time(ends_s)));
         let cut = if delta_v.is_cut { ", where the record is cut off" } else { "" };
         format!("{}{until}{cut}", Quantity::Speed.shown(delta_v.delta_v_m_s, units))
     };
@@ -95,7 +97,7 @@ fn recorded(record: &RecorderRecord, units: UnitSystem) -> Vec<(&'static str, St
             true => ", under the brake, which reads low by up to 18 %",
             false => "",
         };
-        format!("{} at {at_s} s{braked}", Quantity::Speed.shown(speed_m_s, units))
+        format!("{} at {}{braked}", Quantity::Speed.shown(speed_m_s, units), time(at_s))
     });
     let rows = [
         ("Δv ahead", record.delta_v_ahead.map(delta_v)),
@@ -104,4 +106,19 @@ fn recorded(record: &RecorderRecord, units: UnitSystem) -> Vec<(&'static str, St
     ];
     let missing = || "not recorded".to_owned();
     rows.into_iter().map(|(name, value)| (name, value.unwrap_or_else(missing))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 144 ms times 0.001 stood as “0.14400000000000002 s”, as the file counts in ms.
+    #[test]
+    fn times_of_a_record_have_the_digits_that_it_gives() {
+        let ends_s = Some(144.0 * 0.001);
+        let delta_v = RecordedDeltaV { delta_v_m_s: 5.0, ends_s, is_cut: false };
+        let record = RecorderRecord { delta_v_ahead: Some(delta_v), ..RecorderRecord::default() };
+        let [(_, ahead), ..] = &recorded(&record, UnitSystem::Si)[..] else { panic!("rows") };
+        assert_eq!(ahead, "18.00 km/h up to 0.144 s");
+    }
 }
