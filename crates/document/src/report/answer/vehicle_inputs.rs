@@ -211,7 +211,7 @@ mod tests {
         let untouched = vehicle_rows(&file, "struck car", &wording);
         let before = untouched.iter().filter(|row| row.source.contains(&file.source)).count();
         assert!(of_file + 7 >= before && of_file < before, "{of_file} of {before}");
-        let scaled = rows.iter().filter(|row| row.source.contains("from 2000 to 1500 kg"));
+        let scaled = rows.iter().filter(|row| row.source.contains("from 2000 kg to 1500 kg"));
         assert_eq!(scaled.filter(|row| row.class == InputClass::Estimated).count(), 6);
         assert!(rows.iter().all(|row| !row.value.contains("said with")), "a note is no value");
     }

@@ -379,12 +379,7 @@ impl ReconstructRequest {
     ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
         let evidence = self.evidence.load()?;
         let model = self.model(&evidence)?;
-        let cars = model.cars();
-        check_damage(&evidence.damage, cars).map_err(|source| StudyError::ContactOffVehicle {
-            name: self.evidence.name(),
-            vehicle: "the struck car".to_owned(),
-            source,
-        })?;
+        self.check_damage(&evidence, model.cars())?;
         let outside = self.outside(&evidence, &model)?;
         let friction_zones = model.zones().iter().map(FrictionZoneReport::from_zone).collect();
         let (mut target, mut particles, flow) = self.sampled(&evidence, model, None, observer)?;
@@ -411,13 +406,8 @@ impl ReconstructRequest {
         let posterior = Posterior::new(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let (ground, cars) = (target.model().zones(), target.model().cars());
-        let mut by_hand = HandCheck::all(target.evidence(), cars, ground);
-        // They know no slope.
-        by_hand.retain(|_| cars.struck.parameters.slope.is_level());
+        let by_hand = checks_by_hand(&target);
         let apart_by_hand = apart_by_hand(&by_hand, &posterior);
-        let before = [HandSpeed::Struck, HandSpeed::AtStart];
-        let before = by_hand.iter().find(|check| before.contains(&check.speed));
-        let by_hand_m_s = before.map(|check| [check.value_m_s, check.sigma_m_s]);
         let mut caveats = Caveats::from(of_particles(&particles));
         if !is_single_car {
             caveats.extend(later_contacts.map_or_else(not_looked_for, |later| later.caveat()));
@@ -457,8 +447,8 @@ impl ReconstructRequest {
             n_simulations: particles.n_evaluations + particles.z.len() + alone,
             n_particles: particles.z.len(),
             log_evidence: particles.log_evidence,
+            by_hand_m_s: asked_by_hand_m_s(&by_hand),
             by_hand,
-            by_hand_m_s,
             friction_zones,
             later_contacts,
             priors: target.model().prior().components().to_vec(),
@@ -467,6 +457,34 @@ impl ReconstructRequest {
         let report = Answer { report, caveats, provenance: Provenance::from_seed(self.seed) };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
     }
+
+    /// Refuses damage off the struck car.
+    ///
+    /// # Errors
+    /// [`StudyError::ContactOffVehicle`].
+    fn check_damage(&self, evidence: &Evidence, cars: &Cars) -> Result<(), StudyError> {
+        check_damage(&evidence.damage, cars).map_err(|source| StudyError::ContactOffVehicle {
+            name: self.evidence.name(),
+            vehicle: "the struck car".to_owned(),
+            source,
+        })
+    }
+}
+
+/// What one computes by hand of the same evidence; nothing on a slope, of which these methods do not know.
+fn checks_by_hand(target: &ReconstructionTarget) -> Vec<HandCheck> {
+    let (ground, cars) = (target.model().zones(), target.model().cars());
+    match cars.struck.parameters.slope.is_level() {
+        true => HandCheck::all(target.evidence(), cars, ground),
+        false => Vec::new(),
+    }
+}
+
+/// Value and standard deviation by hand of the speed that the case is asked for, m/s.
+fn asked_by_hand_m_s(by_hand: &[HandCheck]) -> Option<[f64; 2]> {
+    let asked = [HandSpeed::Struck, HandSpeed::AtStart];
+    let check = by_hand.iter().find(|check| asked.contains(&check.speed))?;
+    Some([check.value_m_s, check.sigma_m_s])
 }
 
 #[cfg(test)]
