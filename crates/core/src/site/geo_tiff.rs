@@ -160,6 +160,16 @@ mod tests {
         let site = Site::load(&path).unwrap();
         assert_eq!(site.orthophoto.unwrap().world_unit, LengthUnit::SurveyFoot);
         assert!(site.notes.is_empty(), "{:?}", site.notes);
+        // A file beside it with the statistics of the picture says nothing of a system.
+        let statistics = folder.path().join("road.tif.aux.xml");
+        std::fs::write(
+            &statistics,
+            "<PAMDataset><MDI key=\"STATISTICS_MEAN\">91</MDI></PAMDataset>",
+        )
+        .unwrap();
+        let site = Site::load(&path).unwrap();
+        assert_eq!(site.orthophoto.unwrap().world_unit, LengthUnit::SurveyFoot);
+        std::fs::remove_file(&statistics).unwrap();
         // A system of State Plane in one of two feet, and one that is not known here.
         write(&path, &[1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 2225]);
         let error = Site::load(&path).unwrap_err().to_string();

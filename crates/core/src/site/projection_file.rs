@@ -31,13 +31,16 @@ pub(super) fn unit_of_world_file(
     world_file: &Path,
     chosen: Option<LengthUnit>,
 ) -> Result<LengthUnit, SiteError> {
-    let (path, stated) = match projection_beside(picture, world_file) {
+    let beside = match projection_beside(picture, world_file) {
         Some(path) => {
             let stated = of_wkt(&system_in(&read_bytes(&path, MAX_BYTES)?)).plane;
-            (path, stated)
+            stated.map(|stated| (path, Some(stated)))
         }
-        None => (picture.to_owned(), geo_tiff::stated_in(picture)),
+        None => None,
     };
+    // Beside a GeoTIFF programs write the statistics of the picture alone.
+    let (path, stated) =
+        beside.unwrap_or_else(|| (picture.to_owned(), geo_tiff::stated_in(picture)));
     let wrong = |message: String| Err(SiteError::Projection { path, message });
     match (chosen, stated) {
         (_, Some(StatedUnit::Mercator)) => wrong(OF_MERCATOR.to_owned()),
