@@ -79,10 +79,12 @@ impl Columns {
             line.split(char::from(separator)).map(name_and_unit).collect();
         let find =
             |words: &[&str]| cells.iter().position(|(name, _)| words.contains(&name.as_str()));
-        let (east, north) = (find(&EAST)?, find(&NORTH)?);
-        let (height, name, code) = (find(&HEIGHT), find(&NAME), find(&CODE));
-        // What only has x and y may be anything.
+        let east = find(&EAST)?;
+        // What only has x and y may be anything. Beside them n is the number of a point.
         let is_plain = cells.get(east).is_some_and(|(name, _)| name == "x");
+        let north = if is_plain { find(&["y"])? } else { find(&NORTH)? };
+        let name = find(&NAME).or_else(|| find(&["n"]).filter(|_| is_plain));
+        let (height, code) = (find(&HEIGHT), find(&CODE));
         let is_list = code.is_some() || !is_plain && (name.is_some() || height.is_some());
         let unit = |idx: Option<usize>| cells.get(idx?)?.1;
         let units = [unit(Some(east)), unit(Some(north)), unit(height)];
@@ -319,6 +321,16 @@ mod tests {
         let is_said = |notes: Vec<String>| notes.iter().any(|note| note.contains("mirrored"));
         assert!(is_said(notes("id,x,y,z,code")));
         assert!(!is_said(notes("id,E,N,Z,code")));
+    }
+
+    /// The number of a point was read as its northing.
+    #[test]
+    fn n_beside_x_and_y_is_a_number() {
+        let text = "N,X,Y,Z,Desc\n101,2,3,4,TREE\n";
+        let found = read(Path::new("points.csv"), text, &SurveyOptions::default()).unwrap();
+        let [tree] = found.things.as_slice() else { panic!("{:?}", found.things) };
+        assert_eq!((tree.name.as_str(), tree.at.as_slice()), ("101", [[2.0, 3.0]].as_slice()));
+        assert!(!is_table("N,X,Z,Desc"));
     }
 
     #[test]
