@@ -31,7 +31,7 @@ pub(super) struct Thing {
     pub shape: MapShape,
     /// In the coordinates of the file; of an area without the repeated last corner.
     pub at: Vec<[f64; 2]>,
-    /// Of a point, m.
+    /// Of a point, m; of a file in a grid in its unit until its frame is known.
     pub height_m: Option<f64>,
     /// Properties that say what it is, by their names in small letters.
     pub properties: BTreeMap<String, String>,

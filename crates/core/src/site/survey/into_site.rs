@@ -118,8 +118,9 @@ impl Site {
         let mut site = Self::empty(path);
         (site.origin, site.geographic) = (Some(frame.origin), frame.place);
         let Found { things, left_out, notes, .. } = found;
-        for thing in things {
+        for mut thing in things {
             let at_m = frame.places(path, &thing)?;
+            thing.height_m = thing.height_m.map(|height| height * frame.unit_m);
             site.add_thing(path, thing, at_m)?;
         }
         let name = site.name.clone();

@@ -106,6 +106,17 @@ fn a_state_plane_in_feet_is_read_once_its_unit_is_said() {
     assert!((length_m - 120_000.0 / 3937.0).abs() < 1e-6, "{length_m}");
 }
 
+/// A height of 330 ft stood as 330 m in the site file.
+#[test]
+fn heights_of_a_map_in_feet_are_in_metres_too() {
+    let map = r#"{"type": "Point", "coordinates": [983456.5, 199123.25, 330.0]}"#;
+    let unit = Some(LengthUnit::Foot);
+    let site = read_as("map.geojson", map, &SurveyOptions { unit, ..Default::default() }).unwrap();
+    let height_m = site.points[0].height_m.unwrap();
+    assert!((height_m - 330.0 * 0.3048).abs() < 1e-9, "{height_m}");
+    assert_eq!(read("map.geojson", map).unwrap().points[0].height_m, Some(330.0));
+}
+
 /// A skid of 0.8 m in a grid was one of 68 km, and one of 30 m was refused as if a coordinate were mistyped.
 #[test]
 fn a_grid_that_is_stated_is_one_though_its_coordinates_could_be_degrees() {
