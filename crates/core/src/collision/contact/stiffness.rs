@@ -317,6 +317,14 @@ impl BarrierTest {
         if let Some(face) = face.filter(|face| *face != 'F') {
             return Err(format!("the damage {} is on the face {face}", vehicle.damage_code));
         }
+        // The fourth sign is where across it: D for all of it, Y and Z for two thirds at the left and at the right.
+        let part = vehicle.damage_code.chars().nth(3);
+        if part.is_some_and(|part| matches!(part, 'L' | 'C' | 'R' | 'Y' | 'Z')) {
+            let code = &vehicle.damage_code;
+            return Err(format!(
+                "the damage {code} is on a part of the face, as of an offset test"
+            ));
+        }
         let known =
             |value: Option<f64>, name: &str| value.ok_or_else(|| format!("no {name} is stated"));
         Ok(Self {

@@ -61,6 +61,9 @@ fn a_pole_a_side_or_an_angle_is_refused() {
         ("R|LCB|30|0|WALL", "12FDEW2", "at an angle"),
         ("R|LCB|0|0|WALL", "06BDEW2", "on the face B"),
         ("D|LCB|0|0|WALL", "12FDEW2", "rigid"),
+        // Of the offset test the width of the whole car was taken as that of its crush.
+        ("R|LCB|0|0|WALL", "12FYEW4", "the damage 12FYEW4 is on a part of the face"),
+        ("R|LCB|0|0|WALL", "11FLEE5", "on a part of the face"),
     ] {
         let why = of(barrier, code).unwrap_err();
         assert!(why.contains(part), "{part}: {why}");
