@@ -327,12 +327,18 @@ impl BarrierTest {
         }
         let known =
             |value: Option<f64>, name: &str| value.ok_or_else(|| format!("no {name} is stated"));
+        let crush_m = vehicle.crush_m.ok_or("no crush C1 to C6 is stated")?;
+        // A wall crushes the middle of a front everywhere, and 0 is what the database writes for what is not known.
+        let [_, c2, c3, c4, c5, _] = crush_m;
+        if [c2, c3, c4, c5].iter().any(|depth_m| *depth_m <= 0.0) {
+            return Err("one of the crush C2 to C5 is 0, so that it was not measured".to_owned());
+        }
         Ok(Self {
             mass_kg: known(vehicle.mass_kg, "test mass")?,
             width_m: known(vehicle.width_m, "width")?,
             speed_m_s: known(vehicle.speed_m_s, "speed")?,
             no_damage_speed_m_s: 5.0 * MILE_PER_HOUR_M_S,
-            crush_m: vehicle.crush_m.ok_or("no crush C1 to C6 is stated")?,
+            crush_m,
         })
     }
 

@@ -36,11 +36,10 @@ fn a_barrier_test_gives_the_stiffness_and_the_stiffness_the_speed() {
 fn a_pole_a_side_or_an_angle_is_refused() {
     let row = |code: &str| {
         let mut fields = vec!["0"; 60];
-        for (idx, text) in
-            [(0, "1"), (10, "1500"), (14, "1800"), (41, "56.0"), (47, "400"), (53, code)]
-        {
+        for (idx, text) in [(0, "1"), (10, "1500"), (14, "1800"), (41, "56.0"), (53, code)] {
             fields[idx] = text;
         }
+        fields[47..53].fill("400");
         fields.join("|")
     };
     let folder = tempfile::tempdir().unwrap();
@@ -56,6 +55,11 @@ fn a_pole_a_side_or_an_angle_is_refused() {
     };
     assert!(of("R|LCB|0|0|WALL", "12FDEW2").is_ok());
     assert!(of("R|LCB|0|0|WALL", "0").is_ok());
+    // A depth that was not measured made the mean of the others a fifth less.
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replacen("|400|400|", "|400|0|", 1)).unwrap();
+    let why = BarrierTest::from_crash_test(&CrashTest::read(&path).unwrap()).unwrap_err();
+    assert!(why.contains("C2 to C5 is 0"), "{why}");
     for (barrier, code, part) in [
         ("R|POL|0|254|POLE", "12FCEN3", "a pole"),
         ("R|LCB|30|0|WALL", "12FDEW2", "at an angle"),
