@@ -175,7 +175,8 @@ fn is_of_mercator(text: &str) -> bool {
     })
 }
 
-/// The last unit in a part of WKT, by its name, else by the metres that it has.
+/// The last unit in a part of WKT, by its name, else by the metres that it has. What is called a foot alone may be that
+/// of the survey, which its metres say.
 fn last_unit(text: &str) -> Option<StatedUnit> {
     let (_, last) = text.rsplit_once("unit[\"")?;
     let (name, rest) = last.split_once('"')?;
@@ -194,6 +195,8 @@ fn last_unit(text: &str) -> Option<StatedUnit> {
     let is_of = |unit: &LengthUnit| {
         factor.is_some_and(|factor| (factor / unit.length_m() - 1.0).abs() < FACTOR_REACH)
     };
+    let is_survey = by_name == Some(LengthUnit::Foot) && is_of(&LengthUnit::SurveyFoot);
+    let by_name = if is_survey { Some(LengthUnit::SurveyFoot) } else { by_name };
     let unit = by_name.or_else(|| all.into_iter().find(is_of));
     Some(unit.map_or(StatedUnit::Other, StatedUnit::Length))
 }
@@ -234,6 +237,7 @@ mod tests {
             ("\"US survey foot\",1.0", SURVEY_FEET),
             ("\"Foot_US\",0.3048006096012192", SURVEY_FEET),
             ("\"foot\",0.3048", FEET),
+            ("\"Foot\",0.304800609601219", SURVEY_FEET),
             // Names that are not known, with metres that are.
             ("\"Foot (International)\",0.3048", FEET),
             ("\"fot\", 0.30480060960121924,AUTHORITY[\"EPSG\",\"9003\"]", SURVEY_FEET),
