@@ -36,7 +36,8 @@ pub(super) const MAX_CURVE_BYTES: u64 = 32 << 20;
 const MAX_CHANNELS: usize = 4096;
 
 /// Words of remarks that data are not to be used.
-const NOT_VALID: [&str; 5] = ["NO VALID DATA", "NOT VALID", "INVALID", "FAILED", "NO DATA"];
+const NOT_VALID: [&str; 6] =
+    ["NO VALID DATA", "NOT VALID", "INVALID", "FAILED", "NO DATA", "QUESTIONABLE"];
 
 /// A crash test of the database.
 #[derive(Debug, Clone, PartialEq)]

@@ -434,6 +434,7 @@ mod tests {
             ("B-03: INVALID AFTER 60 MSEC", 1),
             ("B-03: channel failed at 40 ms", 1),
             ("B-03: no data", 1),
+            ("B-03: questionable data after 40 ms", 1),
             ("B-03", 0),
         ] {
             std::fs::write(&path, text.replace("B-03: No valid data after 20ms", remark)).unwrap();
