@@ -1,6 +1,8 @@
 //! What the coordinates of a survey say that a slip of the hand explains better: columns that are swapped, so that the
 //! ground is mirrored, a wrong digit within a line, a unit, degrees.
 
+use std::collections::BTreeMap;
+
 use crate::site::MapShape;
 use crate::site::survey::found::Thing;
 
@@ -18,6 +20,48 @@ const FAR_M: f64 = 5000.0;
 
 /// Distance from the first point within which no ground lies, m: as degrees it is 2 km.
 const NEAR_M: f64 = 0.02;
+
+/// Distance of two measurements of one point, at most, m.
+const SAME_POINT_M: f64 = 0.1;
+
+/// Most names of points that are shown.
+const MAX_NAMES: usize = 6;
+
+/// Where the numbered points of a table are, and which of them are elsewhere, too.
+#[derive(Default)]
+pub(super) struct Places {
+    first_m: BTreeMap<String, [f64; 2]>,
+    elsewhere: Vec<String>,
+}
+
+impl Places {
+    /// Takes a point, m. A name without a digit may be that of a kind of point.
+    pub fn take(&mut self, point: &Thing) {
+        let Some(at_m) = point.at.first().filter(|_| point.name.contains(char::is_numeric)) else {
+            return;
+        };
+        let first_m = self.first_m.entry(point.name.clone()).or_insert(*at_m);
+        let apart_m = distance(first_m, at_m);
+        if apart_m > SAME_POINT_M {
+            self.elsewhere.push(format!("{} ({apart_m:.2} m apart)", point.name));
+        }
+    }
+
+    /// That names stand at several places.
+    pub fn note(&self) -> Option<String> {
+        let shown: Vec<&str> = self.elsewhere.iter().take(MAX_NAMES).map(String::as_str).collect();
+        let more = match self.elsewhere.len().saturating_sub(shown.len()) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        (!shown.is_empty()).then(|| {
+            format!(
+                "points of one number stand at more than one place: {}{more}; which is meant is not in the file",
+                shown.join(", ")
+            )
+        })
+    }
+}
 
 /// What is in doubt, a sentence each.
 ///

@@ -15,7 +15,7 @@ use std::path::Path;
 use csv::{ReaderBuilder, StringRecord};
 
 use crate::ranges::SURVEY_COORDINATE;
-use crate::site::survey::doubts::doubts;
+use crate::site::survey::doubts::{Places, doubts};
 use crate::site::survey::found::{Found, Thing, kept_text, name_and_unit, wrong};
 use crate::site::{LengthUnit, MapShape, SiteError, SurveyOptions};
 
@@ -151,6 +151,7 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
     builder.delimiter(columns.separator).flexible(true).has_headers(true);
     let mut found = Found { is_in_metres: true, ..Found::default() };
     let mut lines: BTreeMap<String, usize> = BTreeMap::new();
+    let mut places = Places::default();
     for record in builder.from_reader(text.as_bytes()).records() {
         let record = record.map_err(|error| {
             wrong(path, error.position().map(csv::Position::line), &"is no row of a table")
@@ -159,6 +160,7 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
             continue;
         }
         let thing = columns.thing(path, &record, lengths_m)?;
+        places.take(&thing);
         let code = thing.properties.get("code").cloned().unwrap_or_default();
         if !options.is_line(&code) {
             found.add(path, thing)?;
@@ -181,6 +183,7 @@ pub(super) fn read(path: &Path, text: &str, options: &SurveyOptions) -> Result<F
         line.at.dedup();
     }
     found.notes.extend(doubts(&found.things, 1.0));
+    found.notes.extend(places.note());
     Ok(found)
 }
 
@@ -321,6 +324,22 @@ mod tests {
         let is_said = |notes: Vec<String>| notes.iter().any(|note| note.contains("mirrored"));
         assert!(is_said(notes("id,x,y,z,code")));
         assert!(!is_said(notes("id,E,N,Z,code")));
+    }
+
+    #[test]
+    fn a_number_that_stands_at_two_places_is_said() {
+        let notes = |second: &str| {
+            let text = format!(
+                "id,E,N,code\n101,2,3,KERB\n102,4,3,KERB\nTree,0,0,\nTree,9,9,\n{second}\n"
+            );
+            let read = read(Path::new("points.csv"), &text, &SurveyOptions::default());
+            read.unwrap().notes.join("; ")
+        };
+        let twice = notes("101,2,8,STONE");
+        assert!(twice.contains("more than one place: 101 (5.00 m apart); which"), "{twice}");
+        for other in ["103,2,8,STONE", "101,2.02,3,STONE"] {
+            assert!(!notes(other).contains("more than one place"), "{other}");
+        }
     }
 
     /// The number of a point was read as its northing.
