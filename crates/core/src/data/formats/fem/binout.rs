@@ -218,11 +218,17 @@ impl Table {
         doubts: &mut Vec<String>,
     ) -> Result<Option<Self>, String> {
         let mut states = std::mem::take(&mut folder.states);
-        let is_complete = |state: &State| {
+        let is_complete = |state: &State, before: Option<&State>| {
             let first = wanted.first().copied().unwrap_or_default();
-            state.arrays.contains_key("time") && state.arrays.contains_key(first)
+            let arrays = &state.arrays;
+            let lacks = |of: &State| {
+                let mut had = wanted.iter().filter(|array| of.arrays.contains_key(**array));
+                had.any(|array| !arrays.contains_key(*array))
+            };
+            arrays.contains_key("time") && arrays.contains_key(first) && !before.is_some_and(lacks)
         };
-        if states.last().is_some_and(|last| !is_complete(last)) {
+        let before = states.len().checked_sub(2).and_then(|at| states.get(at));
+        if states.last().is_some_and(|last| !is_complete(last, before)) {
             states.pop();
             doubts.push(format!("{name}: {}", cut_state()));
         }
@@ -419,6 +425,30 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A run that is ended while it writes a state leaves some of its arrays.
+    #[test]
+    fn a_last_state_without_some_of_its_arrays_is_left_out() {
+        let state = |at: f64, arrays: &[&str]| {
+            let arrays = arrays.iter().map(|array| ((*array).to_owned(), vec![at; 2]));
+            let time = ("time".to_owned(), vec![at]);
+            State { place: (0, format!("d{at}")), arrays: arrays.chain([time]).collect() }
+        };
+        let both = ["x_force", "y_force"];
+        let read = |states: Vec<State>| {
+            let mut folder = Folder { ids: vec![3.0, 3.0], states, ..Folder::default() };
+            let mut doubts = Vec::new();
+            let table = Table::new((CONTACTS.0, both.as_slice()), &mut folder, &mut doubts);
+            table.map(|table| (table.unwrap().time, doubts))
+        };
+        let cut = vec![state(0.0, &both), state(1.0, &both), state(2.0, &both[..1])];
+        let (time, doubts) = read(cut).unwrap();
+        assert_eq!(time, [0.0, 1.0]);
+        assert!(doubts[0].contains("the last state is not complete"), "{doubts:?}");
+        let damaged = vec![state(0.0, &both), state(1.0, &both[..1]), state(2.0, &both)];
+        let error = read(damaged).unwrap_err();
+        assert!(error.contains("d1/y_force: has 0 values"), "{error}");
+    }
 
     #[test]
     fn a_contact_without_sides_has_no_numbers() {
