@@ -135,6 +135,7 @@ impl<'a> Chosen<'a> {
     /// What a person should look at.
     pub(super) fn doubts(&self, results: &Results, deck: Option<DeckUnits>) -> Vec<String> {
         let mut doubts = results.doubts.clone();
+        doubts.extend(deck.and_then(|deck| other_units(results, deck)));
         if !self.is_said {
             doubts.extend(self.open_choice(results));
             doubts.extend(self.open_sign());
@@ -296,6 +297,18 @@ impl<'a> Chosen<'a> {
     }
 }
 
+/// That a file states other units than those that were said, and its numbers are those of a collision in them.
+fn other_units(results: &Results, deck: DeckUnits) -> Option<String> {
+    let stated = results.stated.filter(|stated| *stated != deck)?;
+    (results.open_units().proposed == stated).then(|| {
+        format!(
+            "the file has the factors of {}, and its numbers are taken in {}, as was said: is that on purpose?",
+            stated.name(),
+            deck.name()
+        )
+    })
+}
+
 /// How the yaw angle of a path of a node is had.
 fn axis_remedy(node: &History, results: &Results) -> String {
     let is_other = |of: &&History| of.kind == node.kind && of.name != node.name;
@@ -408,4 +421,33 @@ fn sum(parts: &[&History]) -> Vec<Shown> {
         columns.push((column.name, column.dimension, values));
     }
     columns
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::data::formats::fem::results::{FORCE, columns};
+
+    /// A map of another model took 300 kN over 100 ms as 300 N over 100 s.
+    #[test]
+    fn units_that_contradict_the_file_are_told() {
+        let time = Arc::new(vec![0.0, 50.0, 100.0]);
+        let force = [vec![0.0, 300.0, 0.0], vec![0.0; 3], vec![0.0; 3]];
+        let name = ("spring 8".to_owned(), String::new());
+        let history = History::new(Kind::Spring, name, &time, columns(&FORCE, force));
+        let stated = Some(DeckUnits::KgMmMs);
+        let results = Results { histories: vec![history], stated, ..Results::default() };
+        let chosen = Chosen::new(Path::new("runT01"), &results, None).unwrap();
+        let doubts = |deck| chosen.doubts(&results, deck).join("; ");
+        let other = doubts(Some(DeckUnits::TMmS));
+        assert!(
+            other.contains("factors of kg-mm-ms, and its numbers are taken in t-mm-s"),
+            "{other}"
+        );
+        for deck in [None, stated] {
+            assert!(!doubts(deck).contains("factors"), "{deck:?}");
+        }
+    }
 }
