@@ -244,7 +244,8 @@ impl<'a> Reader<'a> {
         let points =
             text.split_whitespace().map(|point| numbers(self.path, point.split(','), line));
         let points: Vec<(f64, f64, Option<f64>)> = points.collect::<Result<_, _>>()?;
-        let height_m = points.first().and_then(|point| point.2);
+        // Programs write 0 where they know no height.
+        let height_m = points.first().and_then(|point| point.2).filter(|height| *height != 0.0);
         let thing = Thing {
             shape,
             at: points.iter().map(|point| [point.0, point.1]).collect(),

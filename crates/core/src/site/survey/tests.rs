@@ -52,6 +52,9 @@ fn placemarks_lie_in_metres_about_the_first_point() {
     assert!((kerb.line_m[1][0] - 6.867).abs() < 0.005, "{:?}", kerb.line_m);
     assert_eq!((site.friction_zones[0].friction, site.friction_zones[0].border_m.len()), (0.2, 3));
     assert_eq!((site.points[0].name.as_str(), site.points[0].height_m), ("gouge", Some(101.5)));
+    // Points that were drawn on a map have the height 0, which is none.
+    let drawn = read("map.kml", &KML.replace("101.5", "0")).unwrap();
+    assert_eq!(drawn.points[0].height_m, None);
     let place = site.geographic.unwrap().degrees();
     assert!(distance_m(place, [52.0, -1.0]) < 1e-12, "{place:?}");
     let notes = site.notes.join("; ");
