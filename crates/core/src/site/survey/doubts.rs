@@ -11,6 +11,10 @@ use crate::site::survey::found::Thing;
 const SWAPPED_EASTING_M: std::ops::Range<f64> = 3e6..1e7;
 const SWAPPED_NORTHING_M: std::ops::Range<f64> = 1e5..9e5;
 
+/// The same in Gauss-Krüger zones 2 to 4 of Germany, whose systems count to the north first: eastings begin with the
+/// number of the zone, and northings lie between 5200 and 6100 km.
+const SWAPPED_GAUSS_KRUEGER_M: [std::ops::Range<f64>; 2] = [5.2e6..6.1e6, 2.3e6..4.8e6];
+
 /// Step of a line from which it may be a wrong digit, m, and its ratio to those that are usual there.
 const LONG_STEP_M: f64 = 100.0;
 const LONG_RATIO: f64 = 20.0;
@@ -80,7 +84,11 @@ fn distance(a: &[f64; 2], b: &[f64; 2]) -> f64 {
 
 fn swapped(things: &[Thing], unit_m: f64) -> Option<String> {
     let [east_m, north_m] = things.first()?.at.first()?.map(|value| value * unit_m);
-    let is_swapped = SWAPPED_EASTING_M.contains(&east_m) && SWAPPED_NORTHING_M.contains(&north_m);
+    let is_within = |[east, north]: [std::ops::Range<f64>; 2]| {
+        east.contains(&east_m) && north.contains(&north_m)
+    };
+    let is_swapped =
+        is_within([SWAPPED_EASTING_M, SWAPPED_NORTHING_M]) || is_within(SWAPPED_GAUSS_KRUEGER_M);
     is_swapped.then(|| {
         format!(
             "an easting of {east_m:.0} m and a northing of {north_m:.0} m are the other way round in most grids: if the \

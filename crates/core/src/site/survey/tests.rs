@@ -187,6 +187,9 @@ fn northing_before_easting_is_said_of_a_map_too() {
     let said = |map: &str| read("map.geojson", map).unwrap().notes.join(" ").contains("mirrored");
     assert!(said(&map("5423456.5, 512345.25", "5423456.75, 512355.25")));
     assert!(!said(&map("512345.25, 5423456.5", "512355.25, 5423456.75")));
+    // EPSG:31467, zone 3 of Gauss and Krüger.
+    assert!(said(&map("5423456.5, 3512345.25", "5423456.75, 3512355.25")));
+    assert!(!said(&map("3512345.25, 5423456.5", "3512355.25, 5423456.75")));
 }
 
 /// Degrees of another datum, here that of the older German maps, lie beside those of receivers.
