@@ -20,6 +20,10 @@ const HEAD_BYTES: u64 = 4096;
 /// Largest distance from the first point, m: what is farther away belongs to another place, or is wrong.
 const LARGEST_M: f64 = 100_000.0;
 
+/// Words of the names of kerbs, and of marks of tires, which may lead to a kerb.
+const KERBS: [&str; 3] = ["kerb", "curb", "bordstein"];
+const MARKS: [&str; 6] = ["skid", "scuff", "tire mark", "tyre mark", "bremsspur", "reifenspur"];
+
 /// A format of lines and points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SurveyFormat {
@@ -146,7 +150,8 @@ impl Site {
         let kind = property("impactlab");
         let name = full_name(&thing);
         let words = format!("{name} {}", property("layer")).to_lowercase();
-        let is_kerb = ["kerb", "curb", "bordstein"].iter().any(|word| words.contains(word));
+        let has = |of: &[&str]| of.iter().any(|word| words.contains(word));
+        let is_kerb = kind.is_empty() && has(&KERBS) && !has(&MARKS);
         match thing.shape {
             MapShape::Area if kind == "lane" => {
                 self.lanes.push(lane(&thing, name, &at_m).ok_or_else(|| {

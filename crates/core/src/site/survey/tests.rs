@@ -63,6 +63,17 @@ fn placemarks_lie_in_metres_about_the_first_point() {
     }
 }
 
+/// A mark that leads to a kerb was one, and forecasts told of its crossing.
+#[test]
+fn a_mark_at_a_kerb_is_no_kerb() {
+    let n_kerbs = |map: &str| read("map.kml", map).unwrap().kerbs.len();
+    assert_eq!(n_kerbs(KML), 1);
+    assert_eq!(n_kerbs(&KML.replace("skid &amp; scuff", "skid from lane to kerb")), 1);
+    let said =
+        "</name><ExtendedData><Data name=\"impactlab\"><value>line</value></Data></ExtendedData>";
+    assert_eq!(n_kerbs(&KML.replace("Kerb east</name>", &format!("Kerb east{said}"))), 0);
+}
+
 #[test]
 fn coordinates_of_a_grid_are_shifted_by_whole_metres() {
     let map = r#"{"type": "FeatureCollection", "features": [
