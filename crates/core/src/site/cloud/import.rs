@@ -20,6 +20,9 @@ use crate::site::{
 /// Share of pixels with points below which a coarser resolution is advised.
 const SPARSE: f64 = 0.6;
 
+/// Longer side of a cloud below which it is no ground, m.
+const SMALLEST_M: f64 = 0.5;
+
 /// Largest number of a colour with 8 bits.
 const EIGHT_BITS: f32 = 255.0;
 
@@ -240,6 +243,14 @@ fn notes(
              {height_m:.1} m"
         ),
     ];
+    let side_m = [0, 1].map(|axis| summary.high_m[axis] - summary.low_m[axis]);
+    if side_m[0].max(side_m[1]) < SMALLEST_M {
+        notes.push(format!(
+            "all of its points lie within {:.1} mm: are its coordinates longitude and latitude, to be brought into a \
+             projected system first, or in another unit (--unit)?",
+            1e3 * side_m[0].max(side_m[1])
+        ));
+    }
     if filled < SPARSE {
         notes.push("many pixels have no point; larger pixels would show more".to_owned());
     }

@@ -112,6 +112,17 @@ fn coarse() -> CloudOptions {
     CloudOptions { pixel_m: 0.5, ..CloudOptions::default() }
 }
 
+/// Degrees without a coordinate system became a picture of one pixel.
+#[test]
+fn a_cloud_of_a_fingertip_is_told() {
+    let is_told = |options: &CloudOptions| {
+        let notes = import(&las((1, 2), 2, false, 257), options).unwrap().report.notes;
+        notes.iter().any(|note| note.contains("all of its points lie within 3.5 mm: are its"))
+    };
+    assert!(is_told(&CloudOptions { unit: Some(LengthUnit::Millimetre), ..coarse() }));
+    assert!(!is_told(&coarse()));
+}
+
 #[test]
 fn a_cloud_becomes_an_orthophoto_in_its_place() {
     for (name, bytes) in [
