@@ -65,11 +65,19 @@ fn named_differences(before: &[&InputRow], now: &[&InputRow], words: &OpinionWor
 
 /// What the questions say; what follows from it by rule is not.
 fn asked<'a>(parts: &[&'a Part], wording: &Wording) -> Vec<&'a InputRow> {
-    let sources = [wording.words.source_question, wording.words.source_file];
+    let words = wording.words;
+    let sources = [
+        words.source_question,
+        words.source_question_sigma,
+        words.source_file,
+        words.source_evidence,
+        words.source_evidence_sigma,
+        words.source_default_sigma,
+    ];
     let is_asked = |row: &&InputRow| match row.class {
-        InputClass::Given => sources.contains(&row.source.as_str()),
+        InputClass::Given | InputClass::Measured => sources.contains(&row.source.as_str()),
         // A setting that another variant may have changed.
-        _ => row.source == wording.words.source_program,
+        _ => row.source == words.source_program,
     };
     parts.iter().flat_map(|part| &part.inputs).filter(is_asked).collect()
 }
@@ -117,6 +125,33 @@ mod tests {
         assert_eq!(differences(&[&first], &[&first], &wording), "asked as the first variant");
         let text = differences(&[&first], &[&Part::default()], &wording);
         assert_eq!(text, "without brake", "what has no value left is named once");
+    }
+
+    /// Of a friction of 0.4 ± 0.05 in place of 0.7 ± 0.05 the opinion said “asked as the first variant”.
+    #[test]
+    fn what_is_measured_is_asked_too() {
+        let wording = Wording::english(UnitSystem::Si);
+        let words = wording.words;
+        let measured = |friction: &str, source: &str| {
+            let mut part = part(&[["friction", friction]]);
+            part.inputs[0].class = InputClass::Measured;
+            part.inputs[0].source = source.to_owned();
+            part
+        };
+        for source in [
+            words.source_question,
+            words.source_question_sigma,
+            words.source_evidence,
+            words.source_default_sigma,
+        ] {
+            let [dry, wet] = ["0.70 ± 0.05", "0.40 ± 0.05"].map(|value| measured(value, source));
+            let text = differences(&[&dry], &[&wet], &wording);
+            assert_eq!(text, "brake, friction: 0.40 ± 0.05", "{source}");
+        }
+        let rule = measured("0.70 ± 0.05", words.source_prior_rule);
+        let other = measured("0.40 ± 0.05", words.source_prior_rule);
+        let text = differences(&[&rule], &[&other], &wording);
+        assert_eq!(text, "asked as the first variant", "what follows by rule is not asked");
     }
 
     /// A question about the same collision says nothing new; units are those that are asked for.
