@@ -11,7 +11,9 @@ use crate::report::holders::AnswerNames;
 use crate::report::input_table::input_tables;
 use crate::report::method::{Method, method_blocks};
 use crate::report::numbers::{Wording, fill};
-use crate::report::opinion::{Asked, are_by_hand, considered_methods, opinion_blocks};
+use crate::report::opinion::{
+    Asked, are_by_hand, considered_methods, missing_inputs, opinion_blocks,
+};
 use crate::report::parts::{InputRow, Part, PartProvenance};
 use crate::report::paths::ShownPaths;
 use crate::report::picture_blocks::picture_blocks;
@@ -95,7 +97,7 @@ impl Builder<'_> {
                 answer_blocks(self.case, &settings.date, variants, self.wording)
             }
             SectionKind::Pictures => self.pictures(variants),
-            SectionKind::Inputs => self.inputs(variants),
+            SectionKind::Inputs => input_blocks(variants, self.wording),
             SectionKind::Evidence => {
                 or(distinct(variants, |part| &part.evidence), words.no_evidence)
             }
@@ -176,28 +178,6 @@ impl Builder<'_> {
     /// Every picture once, with its number.
     fn pictures(&self, variants: &[VariantParts]) -> Vec<Block> {
         or(picture_blocks(variants, self.wording), self.wording.words.no_pictures)
-    }
-
-    /// The inputs of each variant, of the later ones only what the first does not have.
-    fn inputs(&self, variants: &[VariantParts]) -> Vec<Block> {
-        let words = self.wording.words;
-        let mut blocks = vec![Block::paragraph(words.inputs_text)];
-        let mut first: Option<(&str, BTreeSet<InputRow>)> = None;
-        for variant in variants {
-            let mut seen = BTreeSet::new();
-            let all = parts_of(variant).flat_map(|part| &part.inputs);
-            let mut rows: Vec<&InputRow> = all.filter(|row| seen.insert((*row).clone())).collect();
-            if let Some((name, known)) = &first {
-                rows.retain(|row| !known.contains(row));
-                let text =
-                    if rows.is_empty() { words.inputs_all_same } else { words.inputs_same_as };
-                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
-                blocks.push(Block::paragraph(fill(text, &[("name", name)])));
-            }
-            blocks.extend(input_tables(&variant.name, &rows, self.wording));
-            first.get_or_insert((&variant.name, seen));
-        }
-        blocks
     }
 
     fn validation(&self, variants: &[VariantParts]) -> Vec<Block> {
@@ -290,6 +270,33 @@ pub(super) fn parts_of(variant: &VariantParts) -> impl Iterator<Item = &Part> {
     variant.answers.iter().filter_map(|answer| answer.as_ref().ok())
 }
 
+/// The inputs of each variant; of the later ones only what the first does not have, and what they lack of it.
+fn input_blocks(variants: &[VariantParts], wording: &Wording) -> Vec<Block> {
+    let words = wording.words;
+    let mut blocks = vec![Block::paragraph(words.inputs_text)];
+    let mut first: Option<(&str, Vec<&InputRow>)> = None;
+    for variant in variants {
+        let mut seen = BTreeSet::new();
+        let all = parts_of(variant).flat_map(|part| &part.inputs);
+        let all: Vec<&InputRow> = all.filter(|row| seen.insert(*row)).collect();
+        let mut rows = all.clone();
+        if let Some((name, known)) = &first {
+            rows.retain(|row| !known.contains(row));
+            let text = if rows.is_empty() { words.inputs_all_same } else { words.inputs_same_as };
+            let mut text = fill(text, &[("name", name)]);
+            let lacks = missing_inputs(known, &all).join("; ");
+            if !lacks.is_empty() {
+                text = format!("{text} {}", fill(words.inputs_without, &[("list", &lacks)]));
+            }
+            blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
+            blocks.push(Block::paragraph(text));
+        }
+        blocks.extend(input_tables(&variant.name, &rows, wording));
+        first.get_or_insert((&variant.name, all));
+    }
+    blocks
+}
+
 fn methods(variants: &[VariantParts]) -> BTreeSet<Method> {
     variants.iter().flat_map(parts_of).flat_map(|part| &part.methods).copied().collect()
 }
@@ -324,5 +331,48 @@ fn section_title(kind: SectionKind, wording: &Wording) -> &'static str {
         SectionKind::Sensitivity => words.section_sensitivity,
         SectionKind::Provenance => words.section_provenance,
         SectionKind::Log => words.section_log,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::InputClass;
+    use impactlab_core::units::UnitSystem;
+
+    /// Of a car that coasts the report said “As in variant “driver brakes””, and nothing of the brake.
+    #[test]
+    fn what_a_later_variant_lacks_of_the_first_is_said() {
+        let wording = Wording::english(UnitSystem::Si);
+        let variant = |name: &str, inputs: &[[&str; 2]]| {
+            let row = |[group, label]: &[&str; 2]| InputRow {
+                group: (*group).to_owned(),
+                label: (*label).to_owned(),
+                value: "1".to_owned(),
+                class: InputClass::Given,
+                source: wording.words.source_question.to_owned(),
+            };
+            let inputs = inputs.iter().map(row).collect();
+            let answers = vec![Ok(Part { inputs, ..Part::default() })];
+            VariantParts { name: name.to_owned(), notes: String::new(), answers }
+        };
+        let brake = [["car", "mass"], ["after, brake", "from"], ["after, brake", "share"]];
+        let variants = [
+            variant("brakes", &brake),
+            variant("coasts", &brake[..1]),
+            variant("brakes later", &brake),
+            variant("steers", &[["car", "mass"], ["car", "angle"], ["after, brake", "from"]]),
+        ];
+        let blocks = input_blocks(&variants, &wording);
+        let paragraphs = blocks.iter().filter_map(|block| match block {
+            Block::Paragraph { text } => Some(text.as_str()),
+            _ => None,
+        });
+        let expected = [
+            "As in variant “brakes”. Not in this variant: brake.",
+            "As in variant “brakes”.",
+            "As in variant “brakes”, except for what the table says. Not in this variant: brake, share.",
+        ];
+        assert_eq!(paragraphs.skip(1).collect::<Vec<_>>(), expected);
     }
 }

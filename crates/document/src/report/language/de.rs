@@ -39,6 +39,7 @@ pub(super) const WORDS: Words = Words {
     not_answered_for: "Nicht gefragt oder ohne Antwort: {names}.",
     inputs_same_as: "Wie in Variante „{name}“, außer dem, was die Tabelle nennt.",
     inputs_all_same: "Wie in Variante „{name}“.",
+    inputs_without: "Nicht in dieser Variante: {list}.",
     annex: "Anhang",
     section_opinion: "Gutachten",
     section_answers: "Fragen und Antworten",

@@ -38,6 +38,7 @@ pub(super) const WORDS: Words = Words {
     not_answered_for: "Not asked, or without an answer: {names}.",
     inputs_same_as: "As in variant “{name}”, except for what the table says.",
     inputs_all_same: "As in variant “{name}”.",
+    inputs_without: "Not in this variant: {list}.",
     annex: "Annex",
     section_opinion: "Opinion",
     section_answers: "Questions and answers",

@@ -32,6 +32,7 @@ pub(in crate::report) struct Words {
     pub not_answered_for: &'static str,
     pub inputs_same_as: &'static str,
     pub inputs_all_same: &'static str,
+    pub inputs_without: &'static str,
     pub annex: &'static str,
     pub section_opinion: &'static str,
     pub section_answers: &'static str,

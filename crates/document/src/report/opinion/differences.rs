@@ -1,5 +1,7 @@
 //! What a variant says otherwise than the first one.
 
+use std::collections::BTreeSet;
+
 use crate::report::InputClass;
 use crate::report::answer::given_rows;
 use crate::report::numbers::Wording;
@@ -51,16 +53,25 @@ fn named_differences(before: &[&InputRow], now: &[&InputRow], words: &OpinionWor
     for row in now.iter().filter(|row| !before.contains(row)) {
         add(format!("{}: {}", name(row), row.value));
     }
+    for what in missing_inputs(before, now) {
+        add(format!("{} {what}", words.without));
+    }
+    named
+}
+
+/// Values of which nothing is left, each once; a part of which several values stood there and none is left is
+/// named by itself.
+pub(in crate::report) fn missing_inputs(before: &[&InputRow], now: &[&InputRow]) -> Vec<String> {
     let is_gone = |row: &&&InputRow| !now.iter().any(|other| key(other) == key(row));
-    for row in before.iter().filter(is_gone) {
+    let what = |row: &&InputRow| {
         let is_like = |other: &&&InputRow| other.group == row.group;
         let is_whole = !inner(row).is_empty()
             && before.iter().filter(is_like).count() > 1
             && !now.iter().any(|it| is_like(&it));
-        let what = if is_whole { inner(row).to_owned() } else { name(row) };
-        add(format!("{} {what}", words.without));
-    }
-    named
+        if is_whole { inner(row).to_owned() } else { name(row) }
+    };
+    let mut seen = BTreeSet::new();
+    before.iter().filter(is_gone).map(what).filter(|what| seen.insert(what.clone())).collect()
 }
 
 /// What the questions say; what follows from it by rule is not.

@@ -14,6 +14,8 @@ mod words;
 
 pub use differences::variant_differences;
 
+pub(super) use differences::missing_inputs;
+
 pub(super) use blocks::{Asked, are_by_hand, considered_methods, opinion_blocks};
 pub(super) use of_answer::{
     condition_of_hand, opinion_of_force, opinion_of_forecast, opinion_of_hand, opinion_of_impact,
