@@ -4,7 +4,7 @@ use crate::figure::{Figure, FigureElement, Series};
 use crate::report::PictureContent;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::PartPicture;
-use crate::scene::SceneStill;
+use crate::scene::{SceneCar, SceneStill};
 use impactlab_core::units::Quantity;
 
 /// Elements of a picture whose values are told; of more the names alone are.
@@ -27,13 +27,10 @@ fn scene_text(title: &str, still: &SceneStill, wording: &Wording) -> String {
         let unit = quantity.display_unit(wording.units);
         wording.with_unit(&wording.fixed(unit.from_si(si), 1), unit.symbol)
     };
-    let mut told: Vec<&str> = Vec::new();
-    for car in &still.scene.cars {
-        // Of cars that belong together, such as draws, the first stands for all.
-        if told.contains(&&*car.name) || told.len() == MOST_TOLD {
-            continue;
-        }
-        told.push(&car.name);
+    // Where one of several cars that belong together is, such as a draw, says nothing of the others.
+    let cars = &still.scene.cars;
+    let is_alone = |car: &&SceneCar| cars.iter().filter(|of| of.name == car.name).count() == 1;
+    for car in cars.iter().filter(is_alone).take(MOST_TOLD) {
         let pose = car.at(still.time_s).pose;
         let values = [
             ("name", &*car.name),
@@ -142,9 +139,43 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::figure::{Axis, Role};
+    use crate::scene::{CarBody, CarLook, CarMotion, CarShape, Scene, SceneRole, ViewKind};
+    use impactlab_core::collision::{Footprint, Pose};
     use impactlab_core::units::UnitSystem;
+    use impactlab_core::vehicle::Preset;
+
+    /// The place of the first of thirty draws stood there as that of “draws of the forecast”.
+    #[test]
+    fn a_place_is_told_of_no_cars_that_share_a_name() {
+        let vehicle = Preset::Reference.parameters();
+        let body = CarBody::new(&vehicle, &Footprint::from(&vehicle.geometry));
+        let car = |name: &str, x_m: f64| {
+            let poses = [x_m, x_m + 1.0].map(|x_m| Pose { x_m, y_m: 0.0, yaw_rad: 0.0 });
+            SceneCar {
+                name: name.to_owned(),
+                tag: String::new(),
+                role: SceneRole::Forecast,
+                look: CarLook::Ghost,
+                shape: Arc::new(CarShape::new(body)),
+                motion: Arc::new(CarMotion::from_poses(&poses, 1.0, &body).unwrap()),
+            }
+        };
+        let cars = vec![car("draws", 10.0), car("draws", 20.0), car("central path", 30.0)];
+        let still = SceneStill {
+            scene: Arc::new(Scene { cars, ..Scene::default() }),
+            time_s: 1.0,
+            view: ViewKind::Above,
+            near_m: None,
+            is_half_wide: false,
+        };
+        let text = scene_text("Forecast", &still, &Wording::english(UnitSystem::Si));
+        assert!(text.contains("draws") && text.contains("central path: X 31.0 m"), "{text}");
+        assert!(!text.contains("draws: X"), "{text}");
+    }
 
     /// A yaw rate ended at “-0.000032 deg/s”, and the names of a curve had no more than that.
     #[test]
