@@ -24,7 +24,7 @@ use crate::report::{Block, ReportDocument, ReportSettings};
 use impactlab_core::data::Outcome;
 use impactlab_core::error_chain;
 use impactlab_core::uncertainty::CaveatKind;
-use impactlab_study::case_file::{CaseError, CaseFile, CaseOnDisk, CaseReport};
+use impactlab_study::case_file::{CaseError, CaseFile, CaseOnDisk, CaseReport, Variant};
 use impactlab_study::{Library, ModelChoice, Observer};
 
 /// A variant with what its questions contribute.
@@ -63,7 +63,7 @@ pub fn report_case(
             Ok(answer) => Ok(part_of(request, answer, context)),
             Err(error) => Err(paths.shown(&error_chain(error))),
         };
-        let name = wording.given_name(&variant.name);
+        let name = shown_name(case, variant, &wording);
         match parts.last_mut() {
             Some(last) if last.name == name => last.answers.push(part),
             _ => {
@@ -77,6 +77,12 @@ pub fn report_case(
         Builder { case, on_disk, report: &report, settings, wording: &wording, paths: &paths };
     let document = builder.document(&parts);
     Ok(Outcome::Complete((document, report)))
+}
+
+/// What a variant is called; as it is where another variant has its name in the language of the report.
+fn shown_name(case: &CaseFile, variant: &Variant, wording: &Wording) -> String {
+    let name = wording.given_name(&variant.name);
+    if case.variant(&name).is_some() { variant.name.clone() } else { name }
 }
 
 struct Builder<'a> {
@@ -337,8 +343,28 @@ fn section_title(kind: SectionKind, wording: &Wording) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::InputClass;
+    use crate::report::{InputClass, Language, Paper, ReportDate};
     use impactlab_core::units::UnitSystem;
+
+    /// The answers of “base” and “Grundfall” were those of one variant in a German report.
+    #[test]
+    fn no_two_variants_have_one_name_in_a_report() {
+        let german = Wording::new(&ReportSettings {
+            language: Language::De,
+            units: UnitSystem::Si,
+            paper: Paper::A4,
+            date: ReportDate::new(2026, 1, 2).unwrap(),
+        });
+        let variant = |name: &str| Variant { name: name.to_owned(), ..Variant::default() };
+        for (second, told) in
+            [("Grundfall", ["base", "Grundfall"]), ("coasts", ["Grundfall", "rollt aus"])]
+        {
+            let mut case = CaseFile::new("case", variant("base"));
+            case.variants.push(variant(second));
+            let names = case.variants.iter().map(|variant| shown_name(&case, variant, &german));
+            assert_eq!(names.collect::<Vec<_>>(), told, "{second}");
+        }
+    }
 
     /// Of a car that coasts the report said “As in variant “driver brakes””, and nothing of the brake.
     #[test]
