@@ -85,3 +85,15 @@ fn a_reconstruction_is_written_with_what_was_found_and_the_path_of_each_course()
     assert!(!output.status.success() && error.contains("contact force over time"), "{error}");
     assert!(!hve.exists());
 }
+
+/// “the restrictions are in metres and SI units” stood above a height of “1.71 ft above the ground”.
+#[test]
+fn restrictions_in_a_table_for_hve_have_the_units_that_they_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("motion.txt");
+    let case = ["export", "pit-right-rear", "--format", "hve-motion", "--units", "us", "--out"];
+    answer(&[&case[..], &[text(&out)]].concat());
+    let written = fs::read_to_string(&out).expect("a file");
+    assert!(written.contains(" ft above the ground"), "{written}");
+    assert!(!written.contains("SI units"), "{written}");
+}

@@ -135,7 +135,7 @@ fn head(
     writeln!(out, "# {}: {what}", one_line(name))?;
     writeln!(out, "# {axes}")?;
     if let Some(restrictions) = restrictions {
-        writeln!(out, "# the restrictions are in metres and SI units, with y and Y to the left")?;
+        writeln!(out, "# the restrictions have the units that they say, and y and Y to the left")?;
         writeln!(out, "# restrictions: {}", one_line(restrictions))?;
     }
     Ok(())
