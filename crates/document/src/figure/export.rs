@@ -10,8 +10,8 @@ use impactlab_core::units::{Quantity, Unit, UnitSystem};
 ///
 /// The columns are `series` and the two axes under their own labels and units; each point is a row. A
 /// band gives two series, `(low)` and `(high)`; a vertical line gives a row without y; a heat map
-/// gives a row for each cell whose value is positive, and a map of cells one for the middle of each that
-/// has a value, with the value in the name of the series. Two
+/// gives a row for each point whose value is positive, and a map of cells one for the middle of each that
+/// has a value, with the value and its unit in the name of the series. Two
 /// columns follow in a plan with paths: time and heading of each of their points. What restricts the
 /// figure is in the first row of a last column ([`RESTRICTIONS_COLUMN`]), if there is anything to
 /// say.
@@ -38,7 +38,7 @@ pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::
                         map.low[0] + column as f64 * map.step[0],
                         map.low[1] + row as f64 * map.step[1],
                     ];
-                    table.row(&format!("{} ({value:.6e})", map.name), at)?;
+                    table.row(&format!("{} ({value:.6e} 1/m²)", map.name), at)?;
                 }
             }
             FigureElement::CellMap(map) => {
@@ -134,8 +134,10 @@ impl<W: Write> FigureTable<W> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
-    use crate::figure::{LineStyle, Role, Series};
+    use crate::figure::{HeatMap, LineStyle, Role, Series};
     use impactlab_core::uncertainty::{Caveat, CaveatKind, Caveats};
 
     fn csv(figure: &Figure) -> String {
@@ -174,6 +176,22 @@ mod tests {
             reader.records().map(|row| row.unwrap().get(3).unwrap().to_owned()).collect();
         let restriction = "warning: outside the domain: mass is 9000, it learned 800 to 3000";
         assert_eq!(column, [restriction, "", ""]);
+    }
+
+    /// A density of 0.25 stood beside places in feet, of which it is none.
+    #[test]
+    fn a_density_has_its_unit_whatever_the_axes_have() {
+        let axis = |label| Axis::shown(label, Quantity::Length, UnitSystem::Us);
+        let map = HeatMap {
+            name: "density".to_owned(),
+            role: Role::Model,
+            low: [1.0, 2.0],
+            step: [0.5, 0.5],
+            size: [2, 1],
+            values: Arc::new(vec![0.0, 0.25]),
+        };
+        let figure = Figure::new("t", [axis("X"), axis("Y")], vec![FigureElement::HeatMap(map)]);
+        assert_eq!(csv(&figure), "series,X [ft],Y [ft]\ndensity (2.500000e-1 1/m²),1.5,2\n");
     }
 
     #[test]

@@ -230,7 +230,7 @@ pub struct Band {
     pub high: Vec<f64>,
 }
 
-/// Values at the points of a grid, shown by the opacity of a single colour.
+/// A probability density at the points of a grid, shown by the opacity of a single colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
     /// Name in the legend.
@@ -243,8 +243,8 @@ pub struct HeatMap {
     pub step: [f64; 2],
     /// Number of points along x and y.
     pub size: [usize; 2],
-    /// Values row by row from the lowest y upwards, each row from the lowest x onwards. A cell of
-    /// value zero is transparent.
+    /// Density, 1/m² also where the axes have other units, row by row from the lowest y upwards, each row
+    /// from the lowest x onwards. A cell of value zero is transparent.
     pub values: Arc<Vec<f64>>,
 }
 
