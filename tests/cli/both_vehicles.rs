@@ -142,3 +142,19 @@ fn a_test_against_a_barrier_says_how_stiff_a_face_is_and_a_vehicle_file_takes_it
         assert!(ran.code != 0 && ran.err.contains(words), "{wrong:?}: {}", ran.err);
     }
 }
+
+/// Of five draws asked for, “draw 6 of the forecast” was the first of the striking vehicle.
+#[test]
+fn draws_of_each_vehicle_are_named_as_its_own_in_the_numbers_of_a_scene() {
+    let folder = TempDir::new().unwrap();
+    let csv = folder.path().join("scene.csv");
+    let scene = ["render", "scene", "pit-right-rear", "--time", "1", "--ghosts", "2", "--out"];
+    answer(&[&scene[..], &[text(&csv)]].concat());
+    let numbers = std::fs::read_to_string(&csv).unwrap();
+    for whose in ["the forecast", "the striking vehicle"] {
+        for (number, is_there) in [(1, true), (2, true), (3, false)] {
+            let name = format!("\ndraw {number} of {whose},");
+            assert_eq!(numbers.contains(&name), is_there, "{name}");
+        }
+    }
+}

@@ -17,7 +17,8 @@ use impactlab_document::figure::{
     self, Figure, FigureElement, LineStyle, Role, Series, analysis_scene_figure,
 };
 use impactlab_document::scene::{
-    FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
+    FilmTiming, ForecastScene, LoadedGround, Scene, ScenePath, SimulationScene, add_forecast,
+    simulation_scene,
 };
 use impactlab_draw::scene::{Camera, Follow, SceneCourse, ScenePicture, ViewKind};
 use impactlab_study::analysis::{Analysis, DensityTask};
@@ -284,13 +285,16 @@ fn add_ghosts(
 /// The paths that were drawn from a forecast, in the units of a figure.
 fn drawn_paths(scene: &Scene, figure: &Figure) -> Vec<FigureElement> {
     let shown = |[x, y]: [f64; 2]| [figure.x.unit.from_si(x), figure.y.unit.from_si(y)];
-    let drawn = scene.paths.iter().filter(|path| !path.has_ticks);
-    let path = |(idx, path): (usize, &impactlab_document::scene::ScenePath)| {
+    let drawn: Vec<&ScenePath> = scene.paths.iter().filter(|path| !path.has_ticks).collect();
+    let path = |(idx, path): (usize, &&ScenePath)| {
+        // The draws of each vehicle are counted from 1.
+        let number = 1 + drawn[..idx].iter().filter(|of| of.name == path.name).count();
+        let of_whom = path.name.strip_prefix("draws ").unwrap_or(&path.name);
         let states = path.motion.states();
         let points = states.iter().map(|state| shown([state.pose.x_m, state.pose.y_m])).collect();
         FigureElement::Path(figure::Path {
             series: Series {
-                name: format!("draw {} of the forecast", idx + 1),
+                name: format!("draw {number} {of_whom}"),
                 role: Role::Muted,
                 style: LineStyle::Solid,
                 points,
@@ -299,5 +303,5 @@ fn drawn_paths(scene: &Scene, figure: &Figure) -> Vec<FigureElement> {
             yaw_rad: states.iter().map(|state| state.pose.yaw_rad).collect(),
         })
     };
-    drawn.enumerate().map(path).collect()
+    drawn.iter().enumerate().map(path).collect()
 }
