@@ -161,8 +161,14 @@ fn answers(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
 fn courses(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
     let rows = |it: &Spoken<'_>| it.opinions().flat_map(|of| of.courses.clone()).collect();
-    let columns: Vec<(String, NamedRows)> =
+    let mut columns: Vec<(String, NamedRows)> =
         spoken.iter().map(|it| (it.name.clone(), rows(it))).collect();
+    // A variant that has one course alone, or none, says nothing of those of the others.
+    let names: Vec<String> =
+        columns.iter().flat_map(|(_, rows)| rows.iter().map(|[name, _]| name.clone())).collect();
+    for (_, rows) in columns.iter_mut().filter(|(_, rows)| rows.is_empty()) {
+        rows.extend(names.iter().map(|name| [name.clone(), NONE.to_owned()]));
+    }
     let titles = [words.course, words.probability];
     let mut blocks = beside(words.courses, titles, &columns, words.in_no_draw);
     let is_forecast = |of: &PartOpinion| of.rank == Rank::Forecast && !of.courses.is_empty();

@@ -229,3 +229,38 @@ fn what_was_counted_without_the_force_network_is_said_to_be_so() {
     let told = told_of_held(Rank::Forecast, table(), &[Method::ResponseNetwork]);
     assert!(!told.contains("without the force network"), "{told}");
 }
+
+/// Of a variant whose driver is known to have braked, and which has one course of events, each course of the other
+/// was “in no draw”.
+#[test]
+fn a_variant_with_one_course_does_not_say_that_there_is_none() {
+    let variant = |name: &str, courses: &[&str]| {
+        let row = |course: &&str| [(*course).to_owned(), "50.0 %".to_owned()];
+        let opinion = PartOpinion {
+            rank: Rank::Reconstruction,
+            question: "How fast was it?".to_owned(),
+            answer: String::new(),
+            courses: courses.iter().map(row).collect(),
+            figures: Vec::new(),
+            held: None,
+            is_doubtful: false,
+            hinges: Vec::new(),
+            left_out: Vec::new(),
+        };
+        let answers = vec![Ok(Part { opinion: Some(opinion), ..Part::default() })];
+        VariantParts { name: name.to_owned(), notes: String::new(), answers }
+    };
+    let variants = [
+        variant("unknown", &["it brakes", "it coasts"]),
+        variant("brakes", &[]),
+        variant("other", &["it brakes", "it turns"]),
+    ];
+    let blocks = courses(&spoken(&variants), &Wording::english(UnitSystem::Si));
+    let [Block::Table(table)] = &blocks[..] else { panic!("{blocks:?}") };
+    let expected = [
+        ["it brakes", "50.0 %", "–", "50.0 %"],
+        ["it coasts", "50.0 %", "–", "in no draw"],
+        ["it turns", "in no draw", "–", "50.0 %"],
+    ];
+    assert_eq!(table.rows, expected);
+}
