@@ -154,7 +154,7 @@ impl PredictMotionReport {
             Fact::rough(Term::RivalError, Quantity::Length, rival.known_error_m),
         ];
         if is_known {
-            facts.push(Fact::new(Term::RivalRegion, Value::Share(rival.region_level)));
+            facts.push(Fact::new(Term::RivalRegion, Value::Chance(rival.region_level, None)));
         }
         if agree != Term::MethodsAgree {
             facts.push(Fact::new(Term::WhyApart, Value::Term(why)));
@@ -332,6 +332,18 @@ mod tests {
         assert_eq!(left_out(&report), [""; 0]);
         report.contacts.as_mut().unwrap().n_failed = 3;
         assert_eq!(left_out(&report), ["3 draws of the forecast could not be used"]);
+    }
+
+    /// The region that holds an end far beside the forecast was one “of 100.0 %”.
+    #[test]
+    fn no_region_of_a_forecast_is_certain() {
+        let mut report = forecast(None);
+        for (level, told) in [(1.0, "> 99.9 %"), (0.392, "39.2 %"), (0.0, "< 0.1 %")] {
+            report.rival.as_mut().unwrap().region_level = level;
+            let table = report.rival_table().unwrap();
+            let text = table.to_text(&FactWriter::english(UnitSystem::Si));
+            assert!(text.rows.iter().any(|row| row.cells[1] == told), "{told}: {text:?}");
+        }
     }
 
     #[test]
