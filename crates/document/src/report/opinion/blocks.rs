@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use crate::report::Block;
 use crate::report::answer::capitalized;
 use crate::report::beside::{NamedRows, beside, taken_rows_alike, told_alike};
 use crate::report::build::{VariantParts, parts_of};
@@ -14,6 +13,7 @@ use crate::report::opinion::words::{OpinionWords, opinion_words};
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
 use crate::report::provenance::own_file;
+use crate::report::{Block, Table};
 use impactlab_core::uncertainty::CaveatKind;
 use impactlab_study::case_file::{CaseFile, CaseOnDisk, UsedFile};
 
@@ -241,15 +241,27 @@ fn are_all(spoken: &[Spoken<'_>], rank: Rank) -> bool {
     spoken.iter().flat_map(Spoken::opinions).all(|of| of.rank == rank)
 }
 
-/// How often such intervals held, each table once, and what the known error is.
+/// How often such intervals held, each table once and with the variants that it is of unless all are, and what the
+/// known error is.
 fn held(spoken: &[Spoken<'_>], wording: &Wording) -> Vec<Block> {
     let words = opinion_words(wording.language);
-    let mut blocks: Vec<Block> = Vec::new();
-    for table in spoken.iter().flat_map(Spoken::opinions).filter_map(|of| of.held.as_ref()) {
-        if !blocks.contains(table) {
-            blocks.push(table.clone());
+    let mut tables: Vec<(&Block, Vec<&str>)> = Vec::new();
+    for it in spoken {
+        for table in it.opinions().filter_map(|of| of.held.as_ref()) {
+            match tables.iter_mut().find(|(known, _)| *known == table) {
+                Some((_, names)) => names.push(&it.name),
+                None => tables.push((table, vec![&*it.name])),
+            }
         }
     }
+    let named = |(table, names): (&Block, Vec<&str>)| match table {
+        Block::Table(table) if names.len() < spoken.len() => {
+            let caption = format!("{}: {}", names.join(", "), table.caption);
+            Block::Table(Table { caption, ..table.clone() })
+        }
+        table => table.clone(),
+    };
+    let mut blocks: Vec<Block> = tables.into_iter().map(named).collect();
     // Of bounds and of intervals that were tried nothing is said where none were counted.
     let is_counted = !blocks.is_empty();
     let is_doubtful = |it: &&Spoken<'_>| it.opinions().any(|of| of.is_doubtful);

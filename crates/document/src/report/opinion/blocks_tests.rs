@@ -130,6 +130,22 @@ fn what_was_counted_is_not_said_of_a_doubtful_answer() {
     assert!(told.contains("not counted") && told.contains("“b”: How often"), "{told}");
 }
 
+/// How often intervals held of coasting and of braked cars stood in two tables, of which none said whose it was.
+#[test]
+fn what_was_counted_of_one_variant_bears_its_name() {
+    let table = |n: &str| {
+        let rows = vec![["place at the end".to_owned(), n.to_owned()]];
+        Some(Block::Table(Table::new("Held", ["Quantity", "Cases"], rows)))
+    };
+    let told = |second: &str| {
+        let variants = [("a", false, table("48")), ("b", false, table(second))];
+        told_of_variants(variants, Rank::Forecast, &[Method::ResponseNetwork])
+    };
+    let (other, same) = (told("24"), told("48"));
+    assert!(other.contains("\"a: Held\"") && other.contains("\"b: Held\""), "{other}");
+    assert!(same.contains("\"Held\"") && !same.contains(": Held"), "{same}");
+}
+
 /// “The intervals were tried …; the bounds are those of 95 % confidence” stood below “it was not counted”.
 #[test]
 fn intervals_that_were_not_counted_are_not_said_to_have_been_tried() {
