@@ -48,7 +48,7 @@ pub(super) fn evidence_rows(
 }
 
 /// What the evidence states, and what the program takes where it states nothing.
-fn stated_rows(evidence: &Evidence, wording: &Wording) -> Vec<InputRow> {
+pub(in crate::report) fn stated_rows(evidence: &Evidence, wording: &Wording) -> Vec<InputRow> {
     let (group, number) = (String::new(), String::new());
     let mut rows = Rows { wording, group, number, rows: Vec::new() };
     evidence.clone().items(&mut rows);

@@ -34,6 +34,7 @@ mod tire_marks;
 
 pub(super) mod stills;
 
+pub(super) use crate::report::answer::evidence_inputs::stated_rows;
 pub(super) use crate::report::answer::facts::{capitalized, facts_table, with_writer};
 pub(super) use crate::report::answer::inputs::given_rows;
 

@@ -3,13 +3,15 @@
 use std::collections::BTreeSet;
 
 use crate::report::InputClass;
-use crate::report::answer::given_rows;
+use crate::report::answer::{given_rows, stated_rows};
 use crate::report::numbers::Wording;
 use crate::report::opinion::words::{OpinionWords, opinion_words};
 use crate::report::parts::{InputRow, Part};
 use crate::report::paths::ShownPaths;
 use impactlab_core::units::UnitSystem;
+use impactlab_reconstruct::evidence::Evidence;
 use impactlab_study::case_file::Variant;
+use impactlab_study::{EvidenceChoice, Request};
 
 /// Differences that are named; more are counted.
 const MOST_NAMED: usize = 5;
@@ -33,12 +35,26 @@ pub(super) fn differences(first: &[&Part], other: &[&Part], wording: &Wording) -
 pub fn variant_differences(first: &Variant, other: &Variant, units: UnitSystem) -> Vec<String> {
     let (wording, paths) = (Wording::english(units), ShownPaths::default());
     let rows = |variant: &Variant| -> Vec<InputRow> {
-        let rows = |request| given_rows(request, "", &wording, &paths);
+        let rows = |request| {
+            let evidence = evidence_in(request).map(|found| stated_rows(found, &wording));
+            [given_rows(request, "", &wording, &paths), evidence.unwrap_or_default()].concat()
+        };
         variant.questions.iter().flat_map(rows).collect()
     };
     let [before, now] = [rows(first), rows(other)];
     let [before, now] = [&before, &now].map(|rows| rows.iter().collect::<Vec<_>>());
     named_differences(&before, &now, opinion_words(wording.language))
+}
+
+/// What was found, where it stands in the question itself.
+fn evidence_in(request: &Request) -> Option<&Evidence> {
+    match request {
+        Request::Reconstruct(request) => match &request.evidence {
+            EvidenceChoice::Inline(evidence) => Some(evidence),
+            EvidenceChoice::File(_) => None,
+        },
+        _ => None,
+    }
 }
 
 /// Values that are other or more, and values that are missing, each once; a part of which several values stood
@@ -112,7 +128,7 @@ fn inner(row: &InputRow) -> &str {
 mod tests {
     use super::*;
     use impactlab_core::collision::Scenario;
-    use impactlab_study::{ImpactRequest, ScenarioChoice};
+    use impactlab_study::{ImpactRequest, ReconstructRequest, ScenarioChoice};
 
     fn part(rows: &[[&str; 2]]) -> Part {
         let wording = Wording::english(UnitSystem::Si);
@@ -196,5 +212,26 @@ mod tests {
         assert!(told.len() == 1 && told[0].starts_with("striking vehicle, speed: 72"), "{told:?}");
         let open = of(&variant(2000.0, None), UnitSystem::Si);
         assert!(open.len() == 1 && open[0].starts_with("without "), "{open:?}");
+    }
+
+    /// “nothing” differed between two variants of which one has another friction of the road.
+    #[test]
+    fn variants_differ_in_the_evidence_of_their_questions() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../datasets/staged/evidence/s03.toml");
+        let found = Evidence::load(std::path::Path::new(file)).unwrap();
+        let variant = |found: &Evidence| {
+            let evidence = EvidenceChoice::Inline(Box::new(found.clone()));
+            let questions = vec![ReconstructRequest::new(evidence).into()];
+            Variant { questions, ..Variant::default() }
+        };
+        let mut other = found.clone();
+        other.friction.as_mut().unwrap().value = Some(0.4);
+        other.edr = None;
+        let differ = |other: &Variant| variant_differences(&variant(&found), other, UnitSystem::Si);
+        assert_eq!(differ(&variant(&found)), [""; 0]);
+        let told = differ(&variant(&other));
+        assert_eq!(told.len(), 2, "{told:?}");
+        assert!(told[0].starts_with("friction of the road, peak friction: 0.4"), "{told:?}");
+        assert!(told[1].starts_with("without event data recorder"), "{told:?}");
     }
 }
