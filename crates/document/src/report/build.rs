@@ -254,7 +254,7 @@ impl Builder<'_> {
                     names.title == part.title && **provenance == part.provenance
                 };
                 match answers.iter_mut().find(is_alike) {
-                    Some((names, _)) => names.variants.push(&variant.name),
+                    Some((names, _)) => names.add(&variant.name),
                     None => {
                         let variants = vec![&*variant.name];
                         answers

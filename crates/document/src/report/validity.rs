@@ -77,8 +77,7 @@ fn each_once<T: PartialEq>(
 /// Adds an answer by the kind of its question.
 fn add_holder<'a>(holders: &mut Vec<AnswerNames<'a>>, kind: &'a str, variant: &'a str) {
     match holders.iter_mut().find(|it| it.title == kind) {
-        Some(it) if it.variants.contains(&variant) => {}
-        Some(it) => it.variants.push(variant),
+        Some(it) => it.add(variant),
         None => holders.push(AnswerNames { title: kind, variants: vec![variant] }),
     }
 }
