@@ -13,11 +13,13 @@ use crate::app::found::Found;
 use crate::app::import::ImportDialog;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
+use crate::app::question_job::QuestionJob;
 use crate::app::response::MotionQuestion;
 use crate::app::source::{Content, Source, read_source};
 use crate::app::state::{Session, State, Subject};
 use crate::app::sweep::SweepCommand;
 use crate::app::tasks::TaskKey;
+use crate::app::vehicles::ChosenVehicles;
 use crate::app::widgets::name_in_units;
 use crate::app::workspaces::Workspace;
 use impactlab_core::collision::Role;
@@ -189,6 +191,24 @@ impl State {
             is_open
         });
         session.force.recorded = None;
+    }
+
+    /// Lets the files of a case that takes the place of another be read again: they may have been changed since
+    /// they were read for that. Data sets and networks, which take long, stay as they were read.
+    pub(super) fn forget_files_of_case(&mut self) {
+        let files = self.case.file.input_files();
+        let is_single = |of: &Source| matches!(of.content, Content::File(_) | Content::Failed(_));
+        self.forget_sources(|source| is_single(source) && files.contains(&source.path));
+        let questions = self.case.file.variants.iter().flat_map(|variant| &variant.questions);
+        for file in questions.flat_map(Request::input_files) {
+            self.session.library.forget(&file);
+        }
+        self.drop_reconstruction();
+        let session = &mut self.session;
+        session.reconstruction.file = None;
+        session.recorder_replay = QuestionJob::default();
+        session.chosen_vehicles = ChosenVehicles::default();
+        session.ground.forget();
     }
 
     /// Allows every question to be asked again, because the data that it refers to have changed.

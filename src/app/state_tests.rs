@@ -6,14 +6,17 @@ use std::time::Duration;
 use crate::app::force::collision_of;
 use crate::app::state::*;
 use crate::app::{
-    Command, Dialog, Measure, Measurement, Measuring, Output, Pane, Source, TaskKey,
+    Command, Content, Dialog, Measure, Measurement, Measuring, Output, Pane, Source, TaskKey,
     VariantCommand, Workspace, Workspaces,
 };
 use impactlab_core::collision::ChannelClass;
 use impactlab_core::data::{Existing, Severity};
 use impactlab_core::units::UnitSystem;
-use impactlab_study::ModelChoice;
-use impactlab_study::case_file::Variant;
+use impactlab_study::case_file::{CaseFile, Variant};
+use impactlab_study::{
+    Drive, EvidenceChoice, ModelChoice, MotionSource, ReconstructRequest, SeriesFile,
+    SimulateRequest,
+};
 
 #[test]
 fn project_and_view_survive_a_restart() {
@@ -174,6 +177,37 @@ fn what_was_entered_or_made_for_one_case_is_not_in_the_next() {
     assert_eq!((session.between.span_s, session.report.problem.as_deref()), (None, None));
     assert!(session.other_variants.is_empty());
     assert_eq!(session.n_cases, n_cases + 1, "fields keep what was typed into them");
+}
+
+/// A case that was opened again after its files had been changed showed, and answered, what they had held
+/// before.
+#[test]
+fn a_case_that_is_opened_again_reads_its_files_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let (evidence, force, case) = (at("evidence.toml"), at("force.csv"), at("spin.impactlab"));
+    let text = include_str!("../../assets/examples/reconstruction.toml");
+    std::fs::write(&evidence, text).unwrap();
+    let drive = Drive { force: Some(SeriesFile::new(&force)), ..Drive::default() };
+    let simulate = SimulateRequest::new(MotionSource::Drive(drive));
+    let reconstruct = ReconstructRequest::new(EvidenceChoice::File(evidence.clone()));
+    let questions = vec![simulate.into(), reconstruct.into()];
+    let variant = Variant { name: "base".to_owned(), questions, ..Variant::default() };
+    CaseFile::new("spin", variant).save(&case, Existing::Refuse).unwrap();
+    let (mut state, context) = (State::default(), egui::Context::default());
+    let opened = |state: &mut State| {
+        state.open_case(&case);
+        state.update_reconstruction(&context);
+        state.evidence().map(|evidence| evidence.case.clone())
+    };
+    assert_eq!(opened(&mut state).as_deref(), Some("example"));
+    // The force was not there, and is now.
+    state.session.sources = vec![Source::failed(force.clone(), "not there".to_owned())];
+    std::fs::copy("datasets/fea/forces/c001.csv", &force).unwrap();
+    std::fs::write(&evidence, text.replace("\"example\"", "\"corrected\"")).unwrap();
+    assert_eq!(opened(&mut state).as_deref(), Some("corrected"));
+    let [source] = &state.session.sources[..] else { panic!("one source") };
+    assert!(source.path == force && matches!(source.content, Content::Loading));
 }
 
 /// The forms had what was open before, under the name of a case whose variant cannot be read.

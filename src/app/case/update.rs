@@ -258,6 +258,7 @@ impl State {
     /// beside what is saved with it, is not of the other.
     fn replace_case(&mut self, case: OpenCase) {
         self.case = case;
+        self.forget_files_of_case();
         self.view.report.date.clear();
         let session = &mut self.session;
         session.n_cases += 1;
