@@ -27,7 +27,8 @@ use impactlab_core::data::{ColumnMap, CrashTest, Existing, RecorderRecord, Sever
 use impactlab_networks::learning::ModelFile;
 use impactlab_networks::response::ResponseModel;
 use impactlab_study::{
-    InputFile, InputKind, ModelChoice, Request, ScenarioChoice, SimulateRequest, VehicleChoice,
+    InputFile, InputKind, ModelChoice, ReconstructRequest, Request, ScenarioChoice,
+    SimulateRequest, VehicleChoice,
 };
 
 /// Whether it is asked of a file, when a person opens it, what becomes of it beside a table.
@@ -84,7 +85,16 @@ impl State {
             Ok(InputFile::Vehicle(vehicle)) => {
                 let name = name_in_units(&vehicle.name, self.view.units);
                 self.say(Severity::Info, format!("struck vehicle: {name}"));
-                self.choose_vehicle(Role::Struck, VehicleChoice::File(path));
+                let choice = VehicleChoice::File(path);
+                // An answer is of what the file said before.
+                let of_it = |of: &ReconstructRequest| of.vehicle == choice || of.striking == choice;
+                if self.project.reconstruct.as_ref().is_some_and(of_it) {
+                    self.drop_reconstruction();
+                }
+                if self.project.replay.as_ref().is_some_and(|of| of.vehicle == choice) {
+                    self.session.recorder_replay = QuestionJob::default();
+                }
+                self.choose_vehicle(Role::Struck, choice);
             }
             Ok(InputFile::Scenario(scenario)) => {
                 for role in Role::ALL {

@@ -9,13 +9,13 @@ use crate::app::{
     Command, Content, Dialog, Measure, Measurement, Measuring, Output, Pane, Source, TaskKey,
     VariantCommand, Workspace, Workspaces,
 };
-use impactlab_core::collision::ChannelClass;
+use impactlab_core::collision::{ChannelClass, Role};
 use impactlab_core::data::{Existing, Severity};
 use impactlab_core::units::UnitSystem;
 use impactlab_study::case_file::{CaseFile, Variant};
 use impactlab_study::{
     Drive, EvidenceChoice, ModelChoice, MotionSource, ReconstructRequest, SeriesFile,
-    SimulateRequest,
+    SimulateRequest, VehicleChoice,
 };
 
 #[test]
@@ -208,6 +208,30 @@ fn a_case_that_is_opened_again_reads_its_files_again() {
     assert_eq!(opened(&mut state).as_deref(), Some("corrected"));
     let [source] = &state.session.sources[..] else { panic!("one source") };
     assert!(source.path == force && matches!(source.content, Content::Loading));
+}
+
+/// The Vehicle pane had the mass that the file had when it was opened for the first time, and the speeds of a
+/// reconstruction with this car stayed.
+#[test]
+fn a_vehicle_that_is_opened_again_is_shown_as_its_file_is_now() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("car.toml");
+    let text = include_str!("../../assets/vehicles/target-2000.toml");
+    let (mut state, context) = (State::default(), egui::Context::default());
+    for mass_kg in [2000.0, 2100.0] {
+        let edited = text.replace("\nmass_kg = 2000.0", &format!("\nmass_kg = {mass_kg:.1}"));
+        std::fs::write(&path, edited).unwrap();
+        let striking = VehicleChoice::File(path.clone());
+        let evidence = EvidenceChoice::File(folder.path().join("evidence.toml"));
+        let reconstruct = ReconstructRequest { striking, ..ReconstructRequest::new(evidence) };
+        state.project.reconstruct = Some(reconstruct);
+        state.session.reconstruction.n_answers = 1;
+        state.apply(Command::Open(vec![path.clone()]), &context);
+        assert_eq!(state.session.reconstruction.n_answers, 0);
+        state.session.chosen_vehicles.update(&state.project);
+        let shown = state.session.chosen_vehicles.get(Role::Struck).unwrap();
+        assert_eq!(shown.mass.mass_kg, mass_kg);
+    }
 }
 
 /// The forms had what was open before, under the name of a case whose variant cannot be read.

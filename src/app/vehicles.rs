@@ -96,6 +96,8 @@ impl State {
             take_vehicle(scenario, role, &choice, units)
         });
         *self.project.vehicle_mut(role) = choice;
+        // A file that is chosen again may have been changed.
+        self.session.chosen_vehicles = ChosenVehicles::default();
         match taken {
             Some(Ok(Some(told))) => self.say(Severity::Info, told),
             Some(Err(error)) => self.say(Severity::Error, error_chain(&error)),
