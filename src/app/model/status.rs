@@ -204,8 +204,11 @@ impl<M: TrainedModel> ModelStatus<M> {
         let choice = ModelChoice::file(path);
         let is_it = |of: &&mut CurrentModel<M>| Arc::ptr_eq(&of.model, model);
         if let Some(current) = self.current.as_mut().filter(is_it) {
-            wanted.clone_from(&choice);
-            self.requested = Some(choice.clone());
+            // Another one that was chosen meanwhile stays chosen.
+            if *wanted == current.choice {
+                wanted.clone_from(&choice);
+                self.requested = Some(choice.clone());
+            }
             current.choice = choice.clone();
             (current.name, current.is_saved) = (name, true);
         } else if let Some(set_aside) = self.set_aside.as_mut().filter(is_it) {
@@ -339,5 +342,26 @@ mod tests {
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("written.safetensors", true));
         assert_eq!(wanted, ModelChoice::file(path));
+    }
+
+    /// A case that was opened while the last network was being kept asked that one instead of its own.
+    #[test]
+    fn a_model_that_was_chosen_while_the_one_in_use_is_written_stays_chosen() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("trained.safetensors");
+        let (library, mut tasks) = (Arc::new(Library::default()), Tasks::default());
+        let mut status = ModelStatus::<ForceModel>::default();
+        let mut wanted = ModelChoice::default();
+        let trained = ModelSource::Shipped.force_model().unwrap();
+        status.take_trained(trained, "trained".to_owned(), &library, Some(&mut wanted));
+        status.save(path.clone(), Existing::Refuse, &mut tasks).unwrap();
+        wanted = ModelChoice::default();
+        settle(&mut status, &mut tasks, &library, &mut wanted);
+        assert_eq!(wanted, ModelChoice::default());
+        let current = status.current.as_ref().unwrap();
+        assert_eq!((&current.choice, current.is_saved), (&ModelChoice::file(path), true));
+        status.update(&wanted, &library, &mut tasks);
+        settle(&mut status, &mut tasks, &library, &mut wanted);
+        assert_eq!(status.current.as_ref().unwrap().choice, ModelChoice::default());
     }
 }
