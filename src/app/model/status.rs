@@ -84,7 +84,13 @@ impl<M: TrainedModel> ModelStatus<M> {
             ModelEvent::Loaded(result) => {
                 (self.is_loading, self.problem) = (false, None);
                 match result {
-                    Ok(current) => self.current = Some(current.clone()),
+                    Ok(current) => {
+                        // One that is in no file stays at hand, so that it can be used and saved.
+                        let before = self.current.replace(current.clone());
+                        let kept = [self.set_aside.take(), before.filter(|of| !of.is_saved)];
+                        let mut others = kept.into_iter().flatten();
+                        self.set_aside = others.find(|of| of.choice != current.choice);
+                    }
                     Err(problem) => {
                         self.problem = Some(problem.clone());
                         return ModelNews::Problem(problem.clone());
@@ -285,7 +291,10 @@ fn load<M: TrainedModel>(
     let name = choice.path().map(|path| name_of(path).unwrap_or_else(|| file_name(path)));
     let name = name.unwrap_or_else(|| choice.to_string());
     match M::from_library(library, &choice) {
-        Ok(model) => Ok(CurrentModel { choice, model, name, is_saved: true }),
+        Ok(model) => {
+            let is_saved = !matches!(choice, ModelChoice::Held { .. });
+            Ok(CurrentModel { choice, model, name, is_saved })
+        }
         Err(error) => Err(format!("{choice}: {}", error_chain(&error))),
     }
 }
@@ -342,6 +351,26 @@ mod tests {
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("written.safetensors", true));
         assert_eq!(wanted, ModelChoice::file(path));
+    }
+
+    /// The window closed without a word of a network that was in no file, once another had been chosen.
+    #[test]
+    fn a_trained_model_in_no_file_is_at_hand_beside_another_and_unsaved_when_it_comes_back() {
+        let (library, mut tasks) = (Arc::new(Library::default()), Tasks::default());
+        let mut status = ModelStatus::<ForceModel>::default();
+        let mut wanted = ModelChoice::default();
+        let trained = ModelSource::Shipped.force_model().unwrap();
+        status.take_trained(trained, "trained".to_owned(), &library, Some(&mut wanted));
+        let undone = std::mem::take(&mut wanted);
+        for (wanted, is_in_use) in [(&mut wanted, false), (&mut undone.clone(), true)] {
+            status.update(wanted, &library, &mut tasks);
+            settle(&mut status, &mut tasks, &library, wanted);
+            assert_eq!(status.current.as_ref().unwrap().choice, *wanted);
+            assert_eq!(
+                (status.unsaved(), status.set_aside.is_none()),
+                (Some("trained"), is_in_use)
+            );
+        }
     }
 
     /// A case that was opened while the last network was being kept asked that one instead of its own.
