@@ -1,12 +1,12 @@
 //! The “Variants” pane: the answers of all variants of the case in one table.
 
-use egui::{Grid, Id, Label, RichText, ScrollArea, TextEdit, Ui};
+use egui::{Button, Grid, Id, Label, RichText, ScrollArea, TextEdit, Ui};
 
 use crate::app::case::VariantCommand;
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::variants::AnsweredVariant;
-use crate::app::widgets::severity_color;
+use crate::app::widgets::{OUTDATED_TABLE, severity_color};
 use impactlab_core::data::Severity;
 use impactlab_core::units::{Estimate, NumberFormat, Quantity, UnitSystem};
 use impactlab_study::analysis::MotionOutcome;
@@ -46,7 +46,10 @@ pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ui.horizontal_wrapped(|ui| {
         ui.checkbox(&mut view.shows_all_variants, "Show all variants in plots and tables");
         let rows: Vec<_> = variants.iter().map(|variant| cells(variant, view.units)).collect();
-        if ui.button("Copy table").on_hover_text("Tab-separated, for a spreadsheet").clicked() {
+        let is_current = !variants.iter().any(|variant| variant.is_waiting);
+        let copy = ui.add_enabled(is_current, Button::new("Copy table"));
+        let copy = copy.on_hover_text("Tab-separated, for a spreadsheet");
+        if copy.on_disabled_hover_text(OUTDATED_TABLE).clicked() {
             let line = |row: &[String; 11]| row.join("\t").replace('\n', " ");
             let lines: Vec<_> = rows.iter().map(line).collect();
             ui.ctx().copy_text(format!("{}\n{}\n", COLUMNS.join("\t"), lines.join("\n")));

@@ -1,6 +1,6 @@
 //! The facts of an answer as grids that can be copied.
 
-use egui::{Grid, Label, ScrollArea, Ui};
+use egui::{Button, Grid, Label, ScrollArea, Ui};
 
 use crate::app::widgets::{notice_in_row_ui, value_ui};
 use impactlab_core::data::Severity;
@@ -13,8 +13,11 @@ const NAME_WIDTH: f32 = 150.0;
 /// Width that a value takes beside others, points.
 const VALUE_WIDTH: f32 = 150.0;
 
+/// What is said of a table that cannot be copied.
+pub const OUTDATED_TABLE: &str = "This table is not the answer to what is asked now: it can be copied as soon as that is computed";
+
 /// Draws tables of facts below each other, with a button that copies them to the clipboard, separated
-/// by tabs.
+/// by tabs. Those of an answer that is greyed, which is not of what is asked any more, cannot be copied.
 ///
 /// - `name`: the case or scenario to which they belong; it tells the tables of a pane apart and is the
 ///   first cell of what is copied.
@@ -23,8 +26,14 @@ pub fn facts_ui(ui: &mut Ui, name: &str, tables: &[FactTable], units: UnitSystem
     for (idx, table) in tables.iter().enumerate() {
         ui.horizontal_wrapped(|ui| {
             ui.strong(&table.title);
+            if idx > 0 {
+                return;
+            }
             let hint = "As tables for a spreadsheet, separated by tabs";
-            if idx == 0 && ui.small_button("Copy table").on_hover_text(hint).clicked() {
+            let is_current = ui.opacity() >= 1.0;
+            let copy = ui.add_enabled(is_current, Button::new("Copy table").small());
+            let copy = copy.on_hover_text(hint).on_disabled_hover_text(OUTDATED_TABLE);
+            if copy.clicked() {
                 ui.ctx().copy_text(copied(name, &tables));
             }
         });
@@ -127,7 +136,33 @@ fn copied(name: &str, tables: &[TextTable]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use egui_kittest::Harness;
+    use egui_kittest::kittest::{NodeT, Queryable};
+
     use super::*;
+    use impactlab_study::facts::{Fact, Term, Value};
+
+    /// The table of a greyed answer was copied without a mark, though no figure of it could be saved.
+    #[test]
+    fn a_table_that_is_not_of_what_is_asked_cannot_be_copied() {
+        let text = |text: &str| Value::English(text.to_owned());
+        let table = FactTable {
+            title: text("Force"),
+            rows: text("quantity"),
+            columns: vec![text("value")],
+            levels: &[],
+            facts: vec![Fact::text(Term::Origin, "shipped")],
+        };
+        for (opacity, is_disabled) in [(1.0, false), (0.35, true)] {
+            let tables = [table.clone(), table.clone()];
+            let harness = Harness::new_ui(move |ui| {
+                ui.multiply_opacity(opacity);
+                facts_ui(ui, "c001", &tables, UnitSystem::Si);
+            });
+            let copy = harness.get_by_label("Copy table");
+            assert_eq!(copy.accesskit_node().is_disabled(), is_disabled);
+        }
+    }
 
     #[test]
     fn the_copied_tables_have_a_row_a_fact() {

@@ -26,7 +26,7 @@ pub use choice::{choice_row, salted_choice_row};
 pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use empty::empty_ui;
-pub use facts::{facts_text, facts_ui, sentences_ui};
+pub use facts::{OUTDATED_TABLE, facts_text, facts_ui, sentences_ui};
 pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use notice::{notice_in_row_ui, notice_ui, severity_color, severity_icon};
 pub use points::PointRows;
