@@ -1,6 +1,6 @@
 //! The desktop's dialogs for files, and the commands that follow from a path.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use rfd::AsyncFileDialog;
@@ -34,12 +34,22 @@ impl Purpose {
         }
         let Some(output) = self.output().cloned() else { return Some(Command::Open(paths)) };
         let endings = output.endings();
-        Some(match (endings.first(), path.extension()) {
-            (Some(ending), None) => Command::Write(output, path.with_extension(ending)),
-            (Some(_), Some(_)) if is_confirmed => Command::Replace(output, path),
+        Some(match endings.first() {
+            Some(ending) if !has_ending(&path) => {
+                let mut name = path.file_name().unwrap_or_default().to_owned();
+                name.push(format!(".{ending}"));
+                Command::Write(output, path.with_file_name(name))
+            }
+            Some(_) if is_confirmed => Command::Replace(output, path),
             _ => Command::Write(output, path),
         })
     }
+}
+
+/// Whether a name ends as that of a file does: “Smith v. Jones” and “Miller 12.03.2026” do not.
+fn has_ending(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    ending.chars().all(char::is_alphanumeric) && ending.chars().any(char::is_alphabetic)
 }
 
 /// A dialog that returns nothing in less time is taken as one that was not displayed, because the
@@ -131,6 +141,29 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::output::Output;
+
+    /// A case that was called by its date was written without its ending, which the dialog to open one looks for,
+    /// and went on as “Miller 12.03”.
+    #[test]
+    fn a_name_with_a_point_gets_the_ending_of_what_is_saved() {
+        for (typed, written, is_replaced) in [
+            ("a/Miller 12.03.2026", "a/Miller 12.03.2026.impactlab", false),
+            ("a/Smith v. Jones", "a/Smith v. Jones.impactlab", false),
+            ("a/typed", "a/typed.impactlab", false),
+            ("a/folder/", "a/folder.impactlab", false),
+            ("a/typed.impactlab", "a/typed.impactlab", true),
+            ("a/typed.json", "a/typed.json", true),
+        ] {
+            let saves = Purpose::Save(Output::Case);
+            let found = match saves.command(vec![PathBuf::from(typed)], true) {
+                Some(Command::Write(_, path)) => (path, false),
+                Some(Command::Replace(_, path)) => (path, true),
+                other => panic!("{other:?}"),
+            };
+            assert_eq!(found, (PathBuf::from(written), is_replaced), "{typed}");
+        }
+    }
 
     #[test]
     fn a_dialog_that_ends_at_once_without_a_path_was_never_seen() {
