@@ -43,6 +43,7 @@ impl State {
         for path in paths {
             // So that it leads there from every folder that the program is started in.
             let path = std::path::absolute(&path).unwrap_or(path);
+            self.session.n_reopened += u64::from(self.files_in_use().contains(&path));
             match InputKind::from_path(&path) {
                 InputKind::Case => self.leave(Leaving::Open(path), context),
                 InputKind::Site | InputKind::Orthophoto | InputKind::Survey => {

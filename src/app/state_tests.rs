@@ -234,6 +234,25 @@ fn a_vehicle_that_is_opened_again_is_shown_as_its_file_is_now() {
     }
 }
 
+/// A report of 1530 kg was saved after the evidence had been corrected to 1600 kg and opened again.
+#[test]
+fn a_report_is_not_of_the_case_once_a_file_of_it_is_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("evidence.toml");
+    let text = include_str!("../../assets/examples/reconstruction.toml");
+    std::fs::write(&path, text).unwrap();
+    let (mut state, context) = (State::default(), egui::Context::default());
+    state.view.report.date = "2026-03-01".to_owned();
+    state.apply(Command::Open(vec![path.clone()]), &context);
+    let made_of = state.report_origin().unwrap();
+    state.apply(Command::Open(vec![folder.path().join("beside.csv")]), &context);
+    assert_eq!(state.report_origin().unwrap(), made_of);
+    std::fs::write(&path, text.replace("mass_kg = 1530", "mass_kg = 1600")).unwrap();
+    state.apply(Command::Open(vec![path]), &context);
+    assert_eq!(state.report_origin().unwrap().fingerprint, made_of.fingerprint);
+    assert_ne!(state.report_origin().unwrap(), made_of);
+}
+
 /// The forms had what was open before, under the name of a case whose variant cannot be read.
 #[test]
 fn a_variant_that_cannot_be_shown_leaves_nothing_of_another_in_the_forms() {

@@ -15,6 +15,8 @@ use impactlab_study::{Event, Library};
 pub struct ReportOrigin {
     /// The content of the case, by [`OpenCase::fingerprint`](crate::app::case::OpenCase::fingerprint).
     pub fingerprint: String,
+    /// How often a file in use had been opened again, which may have been changed.
+    pub n_reopened: u64,
     /// The variants that are told of; empty for all.
     pub variants: Vec<String>,
     /// How it is written.

@@ -17,7 +17,7 @@ impl State {
     ///
     /// # Errors
     /// A message for the user if the date is none.
-    fn report_origin(&self) -> Result<ReportOrigin, String> {
+    pub(in crate::app) fn report_origin(&self) -> Result<ReportOrigin, String> {
         let view = &self.view.report;
         let variants = match view.shown_variant_only {
             true => vec![self.case.file.shown.clone()],
@@ -25,6 +25,7 @@ impl State {
         };
         Ok(ReportOrigin {
             fingerprint: self.case_fingerprint(),
+            n_reopened: self.session.n_reopened,
             variants,
             settings: view.settings(self.view.units)?,
         })

@@ -86,6 +86,9 @@ pub struct Session {
     pub cases: CaseList,
     /// How many cases have taken the place of the first one. What is half typed in a field is of one of them.
     pub n_cases: u64,
+    /// How often a file that was in use has been opened again. A report that was made before is of what the file
+    /// held then.
+    pub n_reopened: u64,
     /// The ground of the scene.
     pub ground: GroundSession,
     /// The scene that is shown, and its picture.

@@ -135,7 +135,7 @@ fn made_ui(ui: &mut Ui, made: &Arc<MadeReport>, is_outdated: bool, commands: &mu
         notice_ui(
             ui,
             Severity::Warning,
-            "The case or these settings were changed after this report was made: make it again to save it",
+            "The case or these settings were changed, or a file was opened again, after this report was made: make it again to save it",
         );
     }
     let unanswered = match made.n_unanswered {
