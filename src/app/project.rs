@@ -325,13 +325,18 @@ impl Project {
     }
 
     /// Asks the shipped networks instead of those that were in the memory of an earlier run alone.
-    pub(in crate::app) fn forget_held_models(&mut self) {
+    ///
+    /// - returns the names of those that are not asked any more.
+    pub(in crate::app) fn forget_held_models(&mut self) -> Vec<String> {
+        let mut forgotten = Vec::new();
         for model in [&mut self.predict_force.model, &mut self.predict_motion.response_model] {
-            if matches!(model, ModelChoice::Held { .. }) {
+            if let ModelChoice::Held { held } = model {
+                forgotten.push(std::mem::take(held));
                 *model = ModelChoice::default();
             }
         }
         self.keep_in_step();
+        forgotten
     }
 
     /// The files and data sets that the questions and the plots need.

@@ -40,6 +40,20 @@ fn project_and_view_survive_a_restart() {
     assert_eq!(sources, [PathBuf::from("a.csv")]);
 }
 
+/// After a kill the shipped network answered in the place of one that had just been trained, without a word.
+#[test]
+fn a_network_that_was_lost_with_the_last_run_is_told() {
+    let mut state = State::default();
+    state.project.predict_force.model = ModelChoice::held("trained on 60 cases");
+    state.project.keep_in_step();
+    let (restored, _) = State::restore(&state.save().unwrap()).unwrap();
+    assert_eq!(restored.project.predict_force.model, ModelChoice::default());
+    let [said] = &restored.session.messages[..] else { panic!("one message") };
+    assert!(said.text.contains("\"trained on 60 cases\" of the last run is in no file"));
+    let (restored, _) = State::restore(&restored.save().unwrap()).unwrap();
+    assert!(restored.session.messages.is_empty());
+}
+
 /// A friction that is said of the scenario went on to a recorded log that was selected after it.
 #[test]
 fn the_road_of_the_scenario_is_not_that_of_a_recording() {

@@ -131,9 +131,15 @@ impl State {
         }
         let mut saved: Saved = serde_json::from_str(text)?;
         saved.view.workspaces.complete();
-        saved.project.forget_held_models();
+        let forgotten = saved.project.forget_held_models();
         let Saved { project, case, view, mut sources, .. } = saved;
-        let state = Self { project, case, view, session: Session::default() };
+        let mut state = Self { project, case, view, session: Session::default() };
+        for name in forgotten {
+            let text = format!(
+                "the network {name:?} of the last run is in no file: the shipped one is asked instead"
+            );
+            state.say(Severity::Warning, text);
+        }
         sources.dedup();
         Ok((state, sources))
     }
