@@ -267,6 +267,24 @@ fn a_report_is_not_of_the_case_once_a_file_of_it_is_opened_again() {
     assert_ne!(state.report_origin().unwrap(), made_of);
 }
 
+/// A training that ended after another case was opened put its network into the questions of that.
+#[test]
+fn a_case_that_is_opened_during_a_training_keeps_its_networks() {
+    let mut state = State::default();
+    let subject = Subject::Case { dataset: PathBuf::from("d"), case: "c001".to_owned() };
+    state.select(subject.clone());
+    let n_cases = state.session.n_cases;
+    assert!(state.takes_trained(n_cases));
+    state.new_case();
+    state.select(subject);
+    assert!(!state.takes_trained(n_cases) && state.takes_trained(state.session.n_cases));
+    state.say_of_training("trained on 60 cases", true, None, n_cases);
+    let said = &state.session.messages.last().unwrap().text;
+    assert!(said.contains("no answer of this case, opened meanwhile"), "{said}");
+    state.select(Subject::Scenario);
+    assert!(!state.takes_trained(state.session.n_cases));
+}
+
 /// The forms had what was open before, under the name of a case whose variant cannot be read.
 #[test]
 fn a_variant_that_cannot_be_shown_leaves_nothing_of_another_in_the_forms() {

@@ -49,6 +49,8 @@ pub struct TrainingStatus<M: TrainedModel> {
     pub data: String,
     /// The checkpoint of the training, if this window stores any.
     pub checkpoint: Option<PathBuf>,
+    /// How many cases had been open before the one in which it was started.
+    pub n_cases: u64,
 }
 
 impl<M: TrainedModel> Default for TrainingStatus<M> {
@@ -69,6 +71,7 @@ impl<M: TrainedModel> Default for TrainingStatus<M> {
             problem: None,
             data: String::new(),
             checkpoint: None,
+            n_cases: 0,
         }
     }
 }

@@ -36,7 +36,7 @@ impl State {
 
     fn poll_training(&mut self) {
         let was_running = self.session.force.training.run.is_running();
-        let may_be_used = self.takes_trained();
+        let may_be_used = self.takes_trained(self.session.force.training.n_cases);
         let Session { force, library, archive, tasks, .. } = &mut self.session;
         match force.training.poll() {
             None => {}
@@ -52,8 +52,8 @@ impl State {
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ForceSession { model: status, training, .. } = force;
                 keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
-                let reached = training.reached();
-                self.say_of_training(&of, is_complete, reached);
+                let (reached, n_cases) = (training.reached(), training.n_cases);
+                self.say_of_training(&of, is_complete, reached, n_cases);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }
@@ -67,24 +67,34 @@ impl State {
     }
 
     /// Whether the network of a completed training is put into use by itself: not where it would change the
-    /// answers about a scenario, which were asked with another one.
-    pub(in crate::app) fn takes_trained(&self) -> bool {
-        self.project.subject() != Some(Subject::Scenario)
+    /// answers about a scenario, or of a case that was opened meanwhile, which were asked with another one.
+    ///
+    /// - `n_cases`: that of the training.
+    pub(in crate::app) fn takes_trained(&self, n_cases: u64) -> bool {
+        self.project.subject() != Some(Subject::Scenario) && n_cases == self.session.n_cases
     }
 
     /// Tells the user that a training has ended.
     ///
     /// - `name`: description of the trained model;
     /// - `is_complete`: whether the training was completed; otherwise it was cancelled;
-    /// - `reached`: how far it had got.
+    /// - `reached`: how far it had got;
+    /// - `n_cases`: that of the training.
     pub(in crate::app) fn say_of_training(
         &mut self,
         name: &str,
         is_complete: bool,
         reached: Option<String>,
+        n_cases: u64,
     ) {
         let text = match is_complete {
-            true if self.takes_trained() => format!("training over: {name}, which is in use now"),
+            true if self.takes_trained(n_cases) => {
+                format!("training over: {name}, which is in use now")
+            }
+            true if n_cases != self.session.n_cases => format!(
+                "training over: {name}, which changes no answer of this case, opened meanwhile, until \
+                 it is put into use (Training, or Models)"
+            ),
             true => format!(
                 "training over: {name}, which changes no answer about the scenario until it is put \
                  into use (Training, or Models)"

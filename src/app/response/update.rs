@@ -36,7 +36,7 @@ impl State {
 
     fn poll_response_training(&mut self) {
         let was_running = self.session.response.training.run.is_running();
-        let may_be_used = self.takes_trained();
+        let may_be_used = self.takes_trained(self.session.response.training.n_cases);
         let Session { response, library, archive, tasks, .. } = &mut self.session;
         match response.training.poll() {
             None => {}
@@ -53,8 +53,8 @@ impl State {
                 let draft = draft.map(|draft| ArchiveEntry { name: taken.1, ..draft });
                 let ResponseSession { model: status, training, .. } = response;
                 keep_trained(status, training, taken.0, draft, archive.folder(), tasks);
-                let reached = training.reached();
-                self.say_of_training(&name, is_complete, reached);
+                let (reached, n_cases) = (training.reached(), training.n_cases);
+                self.say_of_training(&name, is_complete, reached, n_cases);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }

@@ -84,9 +84,9 @@ impl State {
         note: TrainingNote,
         context: &Context,
     ) {
-        let data = note.data.clone();
+        let (data, network) = (note.data.clone(), note.network);
         let diary = checkpoint.map(|checkpoint| TrainingDiary::new(checkpoint, note));
-        let Session { force, response, library, .. } = &mut self.session;
+        let Session { force, response, library, n_cases, .. } = &mut self.session;
         let started = match question {
             Request::TrainForce(question) => {
                 force.training.start(*question, diary, data, library, wake(context))
@@ -99,6 +99,10 @@ impl State {
             }
             _ => return,
         };
+        match network {
+            Network::Force => force.training.n_cases = *n_cases,
+            Network::Response => response.training.n_cases = *n_cases,
+        }
         if let Err(error) = started {
             self.say(Severity::Error, error.to_string());
         }
