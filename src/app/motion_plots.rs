@@ -11,6 +11,9 @@ use impactlab_core::units::UnitSystem;
 use impactlab_document::figure::{Figure, analysis_motion_figure, control_figures, recording_line};
 use impactlab_study::{CheckedFile, SimulateAnswer};
 
+/// A recording that is drawn over a motion, with what was read of its file.
+pub type Recorded = (OverlaidRecording, Arc<CheckedFile>);
+
 /// What the figures show.
 pub struct MotionSource {
     /// The simulation.
@@ -19,8 +22,8 @@ pub struct MotionSource {
     pub caveats: Caveats,
     /// Simulations of other variants, by name.
     pub others: Vec<(String, Arc<SimulateAnswer>)>,
-    /// The recording beside them, with its file.
-    pub recording: Option<(OverlaidRecording, Arc<CheckedFile>)>,
+    /// The recording beside them.
+    pub recording: Option<Recorded>,
     /// The curves over time.
     pub channels: Vec<Channel>,
     /// System of units of the figures.
@@ -59,27 +62,28 @@ impl MotionPlots {
 }
 
 /// The recording that is drawn over the motion with its file, if that is open.
-pub fn recorded(
-    chosen: Option<&OverlaidRecording>,
-    sources: &[Source],
-) -> Option<(OverlaidRecording, Arc<CheckedFile>)> {
+pub fn recorded(chosen: Option<&OverlaidRecording>, sources: &[Source]) -> Option<Recorded> {
     let chosen = chosen?;
     let source = sources.iter().find(|source| source.path == chosen.file.path)?;
     let Content::File(file) = &source.content else { return None };
     Some((chosen.clone(), Arc::clone(file)))
 }
 
+/// Whether two recordings are the same, of a file that has not been read again in between.
+pub fn is_same_recording(of: Option<&Recorded>, other: Option<&Recorded>) -> bool {
+    match (of, other) {
+        (Some((of, file)), Some((other, other_file))) => {
+            of == other && Arc::ptr_eq(file, other_file)
+        }
+        (of, other) => of.is_none() && other.is_none(),
+    }
+}
+
 impl MotionSource {
     fn is_same(&self, other: &Self) -> bool {
-        let is_same_recording = match (&self.recording, &other.recording) {
-            (Some((of, file)), Some((other, other_file))) => {
-                of == other && Arc::ptr_eq(file, other_file)
-            }
-            (of, other) => of.is_none() && other.is_none(),
-        };
         let mut others = self.others.iter().zip(&other.others);
         Arc::ptr_eq(&self.answer, &other.answer)
-            && is_same_recording
+            && is_same_recording(self.recording.as_ref(), other.recording.as_ref())
             && self.others.len() == other.others.len()
             && others.all(|(of, other)| of.0 == other.0 && Arc::ptr_eq(&of.1, &other.1))
             && self.caveats == other.caveats
@@ -116,5 +120,30 @@ impl MotionSource {
         }
         let plots = own.into_iter().zip(figures);
         plots.map(|(own, figure)| ControlPlot { own, figure }).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_study::{Library, SeriesFile};
+
+    /// The scene went on with a recording that had been corrected and opened again, where it had as many samples.
+    #[test]
+    fn a_recording_that_was_read_again_is_another() {
+        let library = Library::default();
+        let file = SeriesFile::new("datasets/trajectories-fea/trajectories/FE_c001.csv");
+        let read = || {
+            library.forget(&file.path);
+            let loaded = library.series(&file).unwrap();
+            let checked = Arc::new(CheckedFile { loaded, flags: Vec::new() });
+            (OverlaidRecording { file: file.clone(), offset_s: 0.0 }, checked)
+        };
+        let (before, after) = (read(), read());
+        let n_samples = |(_, file): &Recorded| file.loaded.series.n_samples();
+        assert_eq!(n_samples(&before), n_samples(&after));
+        assert!(is_same_recording(Some(&before), Some(&before.clone())));
+        assert!(!is_same_recording(Some(&before), Some(&after)));
+        assert!(!is_same_recording(Some(&before), None) && is_same_recording(None, None));
     }
 }

@@ -12,6 +12,7 @@ use crate::app::film::FilmCommand;
 use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::Measuring;
+use crate::app::motion_plots::recorded;
 use crate::app::output::Output;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::scene_camera::camera_menu_ui;
@@ -62,18 +63,11 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let span = (end_s, &*analysis.contacts_s(end_s));
     clock_ui(ui, &session.playback, span, &mut view.playback_speed, commands);
     let caveats = session.simulation_caveats(report).outdated_if(are_others_awaited(variants));
-    let recorded = overlaid(project.beside.recording.as_ref(), &session.sources);
-    let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
     let source = SceneSource {
         forecast: State::shown_forecast(view, session),
         answer: Arc::clone(&answer),
         others: SceneSource::others(variants),
-        recording: project
-            .beside
-            .recording
-            .clone()
-            .filter(|_| recorded.is_some())
-            .map(|of| (of, n_recorded)),
+        recording: recorded(project.beside.recording.as_ref(), &session.sources),
         ground: session.ground.shown().map(|loaded| Arc::clone(&loaded.ground)),
         caveats: caveats.clone(),
         units: view.units,

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use crate::app::latest::Latest;
 use crate::app::measure::Measuring;
-use crate::app::recording::{OverlaidRecording, overlaid};
+use crate::app::motion_plots::{Recorded, is_same_recording};
+use crate::app::recording::overlaid;
 use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
 use crate::app::scene::{KeyedCamera, SceneSettings};
 use crate::app::source::Source;
@@ -41,8 +42,8 @@ pub struct SceneSource {
     pub others: Vec<(String, Arc<SimulateAnswer>)>,
     /// The forecast, and the density of the position at its end once that is there.
     pub forecast: Option<ShownForecast>,
-    /// The recording beside them, with the number of its samples.
-    pub recording: Option<(OverlaidRecording, usize)>,
+    /// The recording beside them.
+    pub recording: Option<Recorded>,
     /// The ground below it.
     pub ground: Option<Arc<SceneGround>>,
     /// What restricts the simulation.
@@ -104,7 +105,7 @@ impl SceneSource {
                 (Some(a), Some(b)) => a.is_same(b),
                 (a, b) => a.is_none() && b.is_none(),
             }
-            && self.recording == other.recording
+            && is_same_recording(self.recording.as_ref(), other.recording.as_ref())
             && self.ground.as_ref().map(Arc::as_ptr) == other.ground.as_ref().map(Arc::as_ptr)
             && self.caveats == other.caveats
             && self.units == other.units
