@@ -8,6 +8,7 @@ use crate::app::question_job::QuestionJob;
 use impactlab_core::compare::MotionError;
 use impactlab_study::{
     Answer, Library, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
+    SimulateRequest,
 };
 
 /// The simulation of a data set, running or finished.
@@ -68,6 +69,14 @@ impl ReplayStatus {
         !self.question.is_running() && self.report().is_none()
     }
 
+    /// Whether the vehicle, or how its motion is computed, is not that of the latest simulation any more.
+    pub fn is_outdated(&self, now: &SimulateRequest) -> bool {
+        self.question.latest.as_ref().is_some_and(|latest| {
+            let SimulateDatasetRequest { vehicle, equations, integrator, .. } = &latest.question;
+            *vehicle != now.vehicle || *equations != now.equations || *integrator != now.integrator
+        })
+    }
+
     /// Returns the report of the latest simulation.
     pub fn report(&self) -> Option<&Answer<SimulateDatasetReport>> {
         let answer: &SimulateDatasetAnswer = self.question.ok()?;
@@ -79,5 +88,33 @@ impl ReplayStatus {
     pub fn error(&self, case: &str) -> Option<&MotionError> {
         let idx = self.by_case.get(case)?;
         self.report()?.cases.get(*idx).map(|replay| &replay.error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::question_job::Answered;
+    use impactlab_study::{MotionSource, VehicleChoice};
+
+    /// The errors of a data set stood as those of the vehicle that had been chosen after they were found.
+    #[test]
+    fn errors_of_another_vehicle_are_outdated() {
+        let mut now = SimulateRequest::new(MotionSource::default());
+        let question = SimulateDatasetRequest {
+            dataset: PathBuf::from("trajectories"),
+            case: None,
+            vehicle: now.vehicle.clone(),
+            equations: now.equations,
+            integrator: now.integrator,
+        };
+        let mut status = ReplayStatus::default();
+        assert!(!status.is_outdated(&now), "nothing was simulated");
+        status.question.latest = Some(Answered { question, answer: Err("not read".to_owned()) });
+        assert!(!status.is_outdated(&now));
+        now.duration_s = 2.0;
+        assert!(!status.is_outdated(&now), "the recordings say how long");
+        now.vehicle = VehicleChoice::named("toyota-corolla-2020");
+        assert!(status.is_outdated(&now));
     }
 }

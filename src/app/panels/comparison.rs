@@ -8,12 +8,17 @@ use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{caveats_ui, facts_ui, no_dataset_ui, value_row, value_ui, working_ui};
+use crate::app::widgets::{
+    caveats_ui, facts_ui, no_dataset_ui, notice_ui, value_row, value_ui, working_ui,
+};
 use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
-use impactlab_core::data::DatasetKind;
+use impactlab_core::data::{DatasetKind, Severity};
 use impactlab_core::numerics::Summary;
 use impactlab_core::units::{Quantity, UnitSystem, significant};
 use impactlab_study::{Answer, SimulateDatasetReport, SimulateReport};
+
+/// What is said of errors that were found with another vehicle.
+const OUTDATED: &str = "The vehicle was changed since these cases were simulated: Simulate again";
 
 /// Draws the errors of the selected subject, and below them those of the whole data set with the
 /// button that starts its simulation.
@@ -33,10 +38,15 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
         let replay = session.replays.get(path);
         let report = replay.and_then(|replay| replay.report());
+        let is_running = replay.is_some_and(|replay| replay.question.is_running());
         if let Some(report) = report {
-            dataset_ui(ui, report, view.units, commands);
+            let is_outdated = replay.is_some_and(|replay| replay.is_outdated(&project.simulate));
+            if is_outdated && !is_running {
+                notice_ui(ui, Severity::Warning, OUTDATED);
+            }
+            super::faded_if(ui, is_outdated, |ui| dataset_ui(ui, report, view.units, commands));
         }
-        if replay.is_some_and(|replay| replay.question.is_running()) {
+        if is_running {
             return working_ui(ui, "Simulating…");
         }
         let label = match report {
