@@ -29,7 +29,7 @@ pub struct CaseList {
 struct ListKey {
     path: PathBuf,
     n_cases: usize,
-    n_errors: usize,
+    n_answers: u64,
     filter: String,
     sort: Option<(String, bool)>,
 }
@@ -47,19 +47,18 @@ pub struct CaseTable<'a> {
 
 impl CaseList {
     /// Filters and sorts the cases again if an input of the order has changed: the listed data set,
-    /// its number of cases or of simulated cases, the filter, or the sort column. Without a listed
-    /// data set the list becomes empty.
+    /// its number of cases, its simulation, the filter, or the sort column. Without a listed data set
+    /// the list becomes empty.
     pub fn update(&mut self, sources: &[Source], replays: &Replays, view: &View) {
         let (Some(path), Some(checked)) = (&view.listed, listed_in(sources, view)) else {
             *self = Self::default();
             return;
         };
         let errors = replays.get(path);
-        let report = errors.and_then(ReplayStatus::report);
         let key = ListKey {
             path: path.clone(),
             n_cases: checked.dataset.cases.len(),
-            n_errors: report.map_or(0, |report| report.cases.len()),
+            n_answers: errors.map_or(0, |errors| errors.n_answers),
             filter: view.filter.clone(),
             sort: view.sort_column.clone().map(|key| (key, view.sort_descending)),
         };
@@ -167,6 +166,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::app::source::Content;
     use impactlab_core::data::{Dataset, Flag, FlagKind, check_case};
 
     fn fea() -> CheckedDataset {
@@ -219,6 +219,23 @@ mod tests {
             let error = order(&checked, None, &view).unwrap_err().to_string();
             assert!(error.contains(named), "{error}");
         }
+    }
+
+    /// Cases that were simulated again with another vehicle stayed in the order of the errors before.
+    #[test]
+    fn a_second_simulation_of_a_data_set_orders_its_cases_again() {
+        let path = Path::new("datasets/fea").to_owned();
+        let content = Content::Dataset(Arc::new(fea()));
+        let sources = [Source { content, ..Source::loading(path.clone(), None) }];
+        let view = View { listed: Some(path.clone()), ..View::default() };
+        let mut replays = Replays::from([(path.clone(), ReplayStatus::default())]);
+        let mut list = CaseList::default();
+        let n_ordered = |n_answers: u64| {
+            replays.entry(path.clone()).or_default().n_answers = n_answers;
+            list.update(&sources, &replays, &view);
+            std::mem::take(&mut list.order).len()
+        };
+        assert_eq!([0, 1, 1, 2, 2].map(n_ordered), [100, 100, 0, 100, 0]);
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub struct ReplayStatus {
     pub question: QuestionJob<SimulateDatasetRequest>,
     /// Index of each case in the report, by the name of the case.
     by_case: BTreeMap<String, usize>,
+    /// How many simulations have ended, so that two of them can be told apart.
+    pub n_answers: u64,
 }
 
 /// The simulated data sets, by the path of their folder.
@@ -50,6 +52,7 @@ impl ReplayStatus {
         if !self.question.poll() {
             return None;
         }
+        self.n_answers += 1;
         if let Some(problem) = self.question.problem() {
             return Some(problem.to_owned());
         }
