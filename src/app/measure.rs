@@ -145,8 +145,8 @@ pub struct Measuring {
     pub begun: Option<Measurement>,
     /// What was measured.
     pub done: Vec<Measurement>,
-    /// The distance as it is typed, in the unit that is shown, for the scale of the orthophoto.
-    pub typed_distance: f64,
+    /// The distance that is entered for the scale of the orthophoto, m.
+    pub distance_m: Option<f64>,
 }
 
 impl Measuring {

@@ -201,11 +201,16 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
     }
-    harness.state_mut().state_mut().session.scene.measuring.typed_distance = 25.0;
+    harness.state_mut().state_mut().session.scene.measuring.distance_m = Some(25.0);
     harness.run_steps(2);
     save(&mut harness, "ground-scale.png");
+    // 25 m became 25 ft when the units were changed before the scale was set.
+    harness.state_mut().state_mut().view.units = UnitSystem::Us;
+    harness.run_steps(2);
     harness.get_by_label("Set scale").click();
     harness.run_steps(4);
+    harness.state_mut().state_mut().view.units = UnitSystem::Si;
+    harness.run_steps(2);
     let (scaled_m, is_placed) = width_m(&harness);
     assert!((scaled_m - 50.0).abs() < 0.5 && is_placed, "{scaled_m} m");
     let map = harness.state().state().project.beside.orthophoto;

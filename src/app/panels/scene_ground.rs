@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use egui::{DragValue, Key, Modifiers, Painter, Pos2, Response, Ui, vec2};
+use egui::{Key, Modifiers, Painter, Pos2, Response, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialog::Purpose;
@@ -11,7 +11,10 @@ use crate::app::ground::{ABOUT_SITES, GroundCommand, GroundSession, OPEN_SITE, R
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
 use crate::app::output::Output;
-use impactlab_core::units::{Quantity, UnitSystem};
+use crate::app::widgets::{EmptyField, optional_quantity};
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::SITE_DISTANCE;
+use impactlab_core::units::UnitSystem;
 use impactlab_document::scene::Scene;
 use impactlab_draw::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
 
@@ -119,13 +122,16 @@ fn scale_ui(
     units: UnitSystem,
     commands: &mut Vec<Command>,
 ) {
-    let unit = Quantity::Length.display_unit(units);
-    let name = ui.label(format!("True distance [{}]", unit.symbol));
-    let field = DragValue::new(&mut measuring.typed_distance).speed(0.1).range(0.0..=1e6);
-    ui.add(field.max_decimals(3)).labelled_by(name.id);
-    let is_typed = measuring.typed_distance > 0.0;
-    if ui.add_enabled(is_typed, egui::Button::new("Set scale")).clicked() {
-        let distance_m = unit.to_si(measuring.typed_distance);
+    let name = ui.label("True distance");
+    let empty = EmptyField { text: "not entered", start_si: 10.0 };
+    optional_quantity(ui, &mut measuring.distance_m, empty, &SITE_DISTANCE, units)
+        .labelled_by(name.id);
+    // What is typed is taken as soon as the field is left, such as by this click.
+    if ui.button("Set scale").clicked() {
+        let Some(distance_m) = measuring.distance_m.take() else {
+            let why = "enter the distance of the two points first".to_owned();
+            return commands.push(Command::Say(Severity::Warning, why));
+        };
         commands.push(Command::Ground(GroundCommand::Scale { ends_m, distance_m }));
         measuring.delete();
         measuring.measure = None;
