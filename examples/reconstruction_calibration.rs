@@ -52,7 +52,8 @@ fn kinds_of_evidence(case: &Evidence, idx: usize) -> Evidence {
     let mut evidence = case.without_edr().rest_only();
     let (x_m, y_m) = (Some(0.0), Some(0.0));
     let heading_rad = Some(Measured { value: 0.0, sigma: 0.035 }.into());
-    evidence.rest = Some(RestPose { x_m, y_m, position_sigma_m: Some(0.15), heading_rad });
+    evidence.rest =
+        Some(RestPose { x_m, y_m, position_sigma_m: Some(0.15), heading_rad, stopped_by: None });
     match idx % 2 {
         0 => {
             let speed_before_m_s = Some(Measured { value: 0.0, sigma: 1.0 }.into());
