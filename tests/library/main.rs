@@ -6,6 +6,7 @@
 mod any_car;
 mod atlas_check;
 mod case_file;
+mod case_package;
 mod cost_growth;
 mod data_bad_input;
 mod data_budgets;
