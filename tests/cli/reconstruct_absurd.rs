@@ -163,7 +163,9 @@ fn where_nothing_is_known_the_answer_is_wide() {
 fn a_lorry_is_outside_of_what_is_known() {
     let folder = TempDir::new().unwrap();
     let (report, _) = answered(&folder, &changed("mass_kg = 1900", "mass_kg = 20170"));
-    let caveats = badges(&report, "outside_domain");
+    let mut caveats = badges(&report, "outside_domain");
+    // Its way of meeting the other car is none that was tried, either.
+    caveats.retain(|caveat| !caveat["quantity"].is_null());
     assert_eq!(caveats.len(), 3, "{caveats:?}");
     assert_eq!(caveats[0]["quantity"], "mass of the struck car [kg]");
     assert_eq!((&caveats[0]["value"], &caveats[0]["range"][1]), (&20_170.0.into(), &2750.0.into()));
