@@ -300,7 +300,7 @@ mod tests {
     fn a_number_from_another_unit_has_no_more_digits_than_it_is_worth() {
         for (value, step, expected) in [
             (3400.0 * 0.453_592_37, 50.0, 0),
-            (1542.214, 50.0, 3),
+            (1542.21, 50.0, 3),
             (123.45 / 0.3048, 0.066, 2),
             (0.1 / 0.3048, 0.066, 3),
             (17.0_f64.to_degrees(), 1.1, 1),
