@@ -56,8 +56,8 @@ Example:
 
 JSON: impactlab schema case --answer says every key with its unit
 
-Exit code 1 if a question has no answer, or one that its own command ends with 1 for too, or if the case, a file or a network is not what it was when the
-case was saved.";
+Exit code 1 if a question has no answer, or one that its own command ends with 1 for too, or if the case,
+a file or a network is not what it was when the case was saved.";
 
 /// Say what is in a case, and whether its files are what they were
 #[derive(Debug, Args)]

@@ -1,6 +1,7 @@
 //! Badges of the answer of a reconstruction: too few particles, several courses of events, evidence that
 //! nothing explains.
 
+use impactlab_core::numerics::NORMAL_QUANTILE_95;
 use impactlab_core::uncertainty::{Caveat, CaveatKind};
 use impactlab_core::units::{Phrase, PhraseValue, Quantity};
 use impactlab_core::vehicle::FrictionZone;
@@ -14,9 +15,6 @@ use impactlab_reconstruct::{
 
 /// Effective sample size below which intervals may be too narrow.
 const LEAST_ESS: f64 = 400.0;
-
-/// Half the width of the interval of 90 % of a normal quantity, standard deviations.
-const NORMAL_90: f64 = 1.645;
 
 /// Sum of probabilities below 1 that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -220,7 +218,7 @@ pub(super) fn apart_by_hand(by_hand: &[HandCheck], posterior: &Posterior) -> Opt
     let apart = |check: &HandCheck| {
         let answer = posterior.speed_of(check.speed)?;
         let [low, high] = answer.ninety();
-        let reach = NORMAL_90 * check.sigma_m_s;
+        let reach = NORMAL_QUANTILE_95 * check.sigma_m_s;
         let is_apart = check.value_m_s + reach < low || high < check.value_m_s - reach;
         let by_hand = [check.value_m_s - reach, check.value_m_s + reach];
         let by_hand = PhraseValue::Estimate {
